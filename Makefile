@@ -1,0 +1,56 @@
+# Every target makes .venv and fills it as needed. Another interpreter: make PYTHON=python3.12 test
+PYTHON ?= python3
+EXTRAS ?= dev
+
+VENV := .venv
+BIN := $(VENV)/bin
+DEV := $(VENV)/.stamp-$(EXTRAS)
+PLOTS := $(VENV)/.stamp-plots
+
+# The matrices are small: threads inside BLAS cost more than they bring.
+export OMP_NUM_THREADS ?= 1
+export OPENBLAS_NUM_THREADS ?= 1
+export MPLBACKEND ?= Agg
+
+.PHONY: help demo test lint bench results docs clean clean-cache
+
+help: ## list the targets
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 22
+
+demo: $(PLOTS) ## find a missing effect in a recording, add it, draw the result in results/demo/
+	$(BIN)/flexarm demo
+
+test: $(DEV) ## run the tests; SLOW=1 adds the slow ones, after the others
+	$(BIN)/python -m pytest $(if $(SLOW),-m "slow or not slow")
+
+lint: $(DEV) ## check style, format and types
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+bench: $(DEV) ## measure speed and accuracy
+	$(BIN)/python -m benchmarks
+
+results: demo bench ## make again what results/ holds
+
+docs: $(DEV) ## run the snippets in the documentation
+	$(BIN)/python -m pytest -m "slow or not slow" tests/test_docs.py
+
+clean-cache: ## forget compiled kernels: numba does not see edits in other files
+	find . -path ./$(VENV) -prune -o \( -name '*.nbi' -o -name '*.nbc' \) -exec rm -f {} +
+	rm -rf "$${XDG_CACHE_HOME:-$$HOME/.cache}/flexarm"
+
+clean: clean-cache ## remove .venv, caches and builds; results/ stays
+	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find . -name __pycache__ -prune -exec rm -rf {} +
+
+$(VENV)/.stamp-venv:
+	@echo "Making $(VENV) with $(PYTHON)"
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "FlexArm needs Python 3.11 or newer: make PYTHON=python3.11 ...")'
+	@$(PYTHON) -m venv --clear $(VENV)
+	@touch $@
+
+$(VENV)/.stamp-%: pyproject.toml | $(VENV)/.stamp-venv
+	@echo "Installing flexarm-env[$*] into $(VENV): a minute or so, until pyproject.toml changes"
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[$*]'
+	@touch $@

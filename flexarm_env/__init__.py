@@ -1,0 +1,51 @@
+"""Find where the model of a flexible arm fails against measurements, add what it lacks, and learn control on the result."""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.1.0"
+
+if TYPE_CHECKING:
+    from flexarm_env.arm import Arm
+    from flexarm_env.effects import Effect, catalogue
+    from flexarm_env.errors import InputError
+    from flexarm_env.identify.fit import add, fit
+    from flexarm_env.identify.compare import compare
+    from flexarm_env.identify.diagnose import diagnose
+    from flexarm_env.identify.recording import Recording
+    from flexarm_env.identify.simulate import simulate
+
+#: Where each public name lives: loaded at first use, so that importing the package stays quick.
+_PLACES = {
+    "Arm": "arm",
+    "Effect": "effects",
+    "catalogue": "effects",
+    "InputError": "errors",
+    "Recording": "identify.recording",
+    "add": "identify.fit",
+    "compare": "identify.compare",
+    "diagnose": "identify.diagnose",
+    "fit": "identify.fit",
+    "simulate": "identify.simulate",
+}
+
+__all__ = [
+    "Arm",
+    "Effect",
+    "InputError",
+    "Recording",
+    "add",
+    "catalogue",
+    "compare",
+    "diagnose",
+    "fit",
+    "simulate",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _PLACES:
+        raise AttributeError(f"module 'flexarm_env' has no attribute '{name}'")
+    return getattr(importlib.import_module(f"flexarm_env.{_PLACES[name]}"), name)

@@ -1,0 +1,223 @@
+"""Arm files: TOML with units, read and written. Nothing in one runs code."""
+
+from __future__ import annotations
+
+import math
+import os
+import tempfile
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from flexarm_env.arm import Arm, check_bounds
+from flexarm_env.effects import Catalogue
+from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.parameters import DEFAULTS, SECTIONS, SENSOR, Parameter, sensor_unit
+from flexarm_env.signals import INPUTS, SIGNALS
+from flexarm_env.units import quantity
+
+TOP = ("name", "description", "drive", "hub", "beam", "sensors", "effects", "columns", "fitted", "origin")
+LARGEST_FILE = 1_000_000
+
+
+def arm_folders() -> list[Path]:
+    """Folders of the shipped arms: inside an installed package, or beside it in a source tree."""
+    here = Path(__file__).parent
+    return [here / "configs" / "arms", here.parent / "configs" / "arms"]
+
+
+def shipped_arms() -> dict[str, Path]:
+    """Return the shipped arms' files by name."""
+    return {path.stem: path for folder in arm_folders() for path in sorted(folder.glob("*.toml"))}
+
+
+def read_arm(source: str | Path, known: Catalogue) -> Arm:
+    """Read an arm from a file or a shipped arm's name.
+
+    Raises:
+        InputError: one line that names file, table and key, and how to mend it.
+    """
+    path = Path(source)
+    shipped = shipped_arms()
+    if str(source) in shipped and not path.is_file():
+        path = shipped[str(source)]
+    if not path.is_file():
+        raise InputError(f"no arm '{source}': neither a file nor a shipped arm{did_you_mean(str(source), shipped)}")
+    if path.stat().st_size > LARGEST_FILE:
+        raise InputError(f"{path} is larger than {LARGEST_FILE} bytes: that is no arm file")
+    try:
+        table = tomllib.loads(path.read_bytes().decode("utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"{path} is not TOML: {error}") from None
+    try:
+        return arm_from_table(table, path.stem, known)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def arm_from_table(table: Mapping[str, Any], name: str, known: Catalogue) -> Arm:
+    """Build an arm from the tables of an arm file."""
+    _refuse_unknown("", table, TOP)
+    drive = dict(_table(table, "drive"))
+    kind = drive.pop("input", "current")
+    if kind not in INPUTS:
+        raise InputError(f"drive.input = {kind!r}{did_you_mean(str(kind), INPUTS)}")
+    constants = {"drive": _section("drive", drive), "hub": _section("hub", _table(table, "hub"))}
+    if kind == "voltage" and constants["drive"]["resistance"] <= 0.0:
+        raise InputError('drive.resistance is missing: voltage drive needs it, as "1.35 ohm"')
+    if "beam" in table:
+        constants["beam"] = _section("beam", _table(table, "beam"))
+    elif sum((constants["hub"]["inertia"], constants["drive"]["motor_inertia"])) <= 0.0:
+        raise InputError("hub.inertia is 0 and there is no beam: nothing could move")
+    sensors = _sensors(_table(table, "sensors"), constants)
+    arm = Arm(
+        name=str(table.get("name", name)),
+        input=kind,
+        constants=constants,
+        sensors=sensors,
+        columns=table.get("columns"),
+        fitted=table.get("fitted", {}),
+        origin=table.get("origin", {}),
+        description=str(table.get("description", "")),
+        known=known,
+    )
+    for effect, given in _table(table, "effects", {}).items():
+        parameters = known[effect].parameters
+        if not isinstance(given, Mapping):
+            raise InputError(f"effects.{effect} is not a table; write [effects.{effect}]")
+        _refuse_unknown(f"effects.{effect}.", given, parameters)
+        missing = [key for key in parameters if key not in given and parameters[key].null is None]
+        if missing:
+            raise InputError(f"effects.{effect}.{missing[0]} is missing")
+        absent = {key: p.null for key, p in parameters.items() if key not in given and p.null is not None}
+        read = {key: _number(f"effects.{effect}.{key}", value, parameters[key]) for key, value in given.items()}
+        arm = arm.with_effect(effect, **absent, **read)
+    return arm
+
+
+def _table(table: Mapping[str, Any], key: str, default: Mapping[str, Any] | None = None) -> Mapping[str, Any]:
+    if key not in table:
+        if default is not None:
+            return default
+        raise InputError(f"table [{key}] is missing")
+    if not isinstance(table[key], Mapping):
+        raise InputError(f"{key} is not a table; write [{key}]")
+    found: Mapping[str, Any] = table[key]
+    return found
+
+
+def _refuse_unknown(prefix: str, table: Mapping[str, Any], allowed: Any) -> None:
+    for key in table:
+        if key not in allowed:
+            raise InputError(f"unknown key '{prefix}{key}'{did_you_mean(key, allowed)}")
+
+
+def _number(path: str, value: Any, parameter: Parameter) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+        raise InputError(f'{path} = {value!r} is no number; write 0.5 or "0.5 {parameter.unit}"')
+    try:
+        number = quantity(value, parameter.unit)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    if math.isnan(number):
+        raise InputError(f"{path} is not a number")
+    return check_bounds(path, number, parameter)
+
+
+def _section(section: str, given: Mapping[str, Any]) -> dict[str, float]:
+    parameters = SECTIONS[section]
+    _refuse_unknown(f"{section}.", given, parameters)
+    values = dict(DEFAULTS[section])
+    values |= {key: _number(f"{section}.{key}", value, parameters[key]) for key, value in given.items()}
+    for key, parameter in parameters.items():
+        if key not in values:
+            raise InputError(f"{section}.{key} is missing; it is a number in {parameter.unit or 'no unit'}")
+    if section == "beam" and values["elements"] != int(values["elements"]):
+        raise InputError(f"beam.elements = {values['elements']:g}; write a whole number")
+    return values
+
+
+def _sensors(given: Mapping[str, Any], constants: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:
+    _refuse_unknown("sensors.", given, SIGNALS)
+    if not given:
+        raise InputError("table [sensors] is empty: name at least one signal, as [sensors.arm_angle]")
+    sensors = {}
+    for signal in SIGNALS:
+        if signal not in given:
+            continue
+        table = _table(given, signal)
+        _refuse_unknown(f"sensors.{signal}.", table, SENSOR)
+        bends = signal.startswith("strain") or signal == "tip_deflection"
+        if bends and "beam" not in constants:
+            raise InputError(f"sensors.{signal} measures the beam, and the arm has none: add [beam] or leave it out")
+        values = {key: p.typical for key, p in SENSOR.items()}
+        for key, value in table.items():
+            unit = Parameter(sensor_unit(signal, key), SENSOR[key].low, SENSOR[key].high, 0.0)
+            values[key] = _number(f"sensors.{signal}.{key}", value, unit)
+        if bends and values["position"] > constants["beam"]["length"]:
+            raise InputError(f"sensors.{signal}.position lies beyond the beam's end at {constants['beam']['length']:g} m")
+        sensors[signal] = values
+    return sensors
+
+
+def write_arm(arm: Arm, path: Path) -> None:
+    """Write an arm file, whole or not at all.
+
+    Raises:
+        InputError: if the place cannot be written.
+    """
+    text = arm_text(arm)
+    try:
+        with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False, encoding="utf-8") as file:
+            file.write(text)
+        os.replace(file.name, path)
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror}; name a folder that exists and can be written") from None
+
+
+def arm_text(arm: Arm) -> str:
+    """Return the arm file's text, values in SI units with the unit beside them."""
+    import tomlkit
+
+    document = tomlkit.document()
+    document["name"] = arm.name
+    if arm.description:
+        document["description"] = arm.description
+    for section, values in arm.constants.items():
+        table = tomlkit.table()
+        if section == "drive":
+            table["input"] = arm.input
+        for key, value in values.items():
+            if DEFAULTS[section].get(key) != value:
+                _put(table, key, value, SECTIONS[section][key].unit)
+        document[section] = table
+    sensors = tomlkit.table(is_super_table=True)
+    for signal, values in arm.sensors.items():
+        table = tomlkit.table()
+        for key, value in values.items():
+            if SENSOR[key].typical != value:
+                _put(table, key, value, sensor_unit(signal, key))
+        sensors[signal] = table
+    document["sensors"] = sensors
+    effects = tomlkit.table(is_super_table=True)
+    for name, values in arm.effects.items():
+        table = tomlkit.table()
+        for key, value in values.items():
+            _put(table, key, value, arm.known[name].parameters[key].unit)
+        effects[name] = table
+    if arm.effects:
+        document["effects"] = effects
+    for key, extra in (("columns", arm.columns), ("fitted", arm.fitted), ("origin", arm.origin)):
+        if extra:
+            document[key] = extra
+    return tomlkit.dumps(document)
+
+
+def _put(table: Any, key: str, value: float, unit: str) -> None:
+    if key == "elements":
+        table[key] = int(value)
+    elif unit and math.isfinite(value):
+        table[key] = f"{value!r} {unit}"
+    else:
+        table[key] = float(value)

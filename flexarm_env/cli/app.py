@@ -1,0 +1,243 @@
+"""The commands, and what each takes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from flexarm_env.arm import Arm
+    from flexarm_env.identify.recording import Recording
+
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    rich_markup_mode="rich",
+    help="Find out where the model of a flexible arm is wrong, and add what it lacks.",
+    epilog="Exit code 0: done. 1: done, and the answer is no. 2: bad input, with one line that says which.",
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+Recordings = Annotated[
+    list[Path], typer.Argument(metavar="RECORDING…", help="CSV files, or folders of them.", show_default=False)
+]
+ArmName = Annotated[str, typer.Option("--arm", metavar="ARM", help="Arm file, or a shipped arm: thesis, thesis-fem.")]
+Columns = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE.toml", help="How foreign recordings name their columns: a \\[columns] table."),
+]
+Effects = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="FILE.py:Name", help="An effect of your own, besides the catalogue; may be repeated. Runs FILE.py."
+    ),
+]
+Json = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for stdout.")]
+Report = Annotated[Path | None, typer.Option(metavar="FILE.html", help="Write a page with figures.")]
+Save = Annotated[Path | None, typer.Option(metavar="ARM.toml", help="Write the arm that results.")]
+Seed = Annotated[int, typer.Option(min=0, help="Of everything random.")]
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from flexarm_env import __version__
+
+        print(f"flexarm {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _all(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None:
+    pass
+
+
+@app.command()
+def compare(
+    recordings: Recordings,
+    arm: ArmName = "thesis",
+    columns: Columns = None,
+    effects: Effects = None,
+    report: Report = None,
+    json: Json = None,
+) -> None:
+    """Replay recordings through an arm: error per signal, regime and frequency band, against the noise."""
+    _check(json, report, pictures=report is not None)
+    model, runs = _load(recordings, arm, columns, effects)
+    from flexarm_env.cli import tables, work
+
+    result = work.compare(model, runs)
+    work.finish("compare", arm, runs, None, json, work.comparison_json(result), tables.comparison(result))
+    if report is not None:
+        work.report(report, result, None, None)
+
+
+@app.command()
+def diagnose(
+    recordings: Recordings,
+    arm: ArmName = "thesis",
+    columns: Columns = None,
+    effects: Effects = None,
+    report: Report = None,
+    save: Save = None,
+    seed: Seed = 0,
+    jobs: Annotated[int, typer.Option(min=1, help="Processes to use.")] = 2,
+    json: Json = None,
+) -> None:
+    """Tell whether constants are wrong or an effect is missing, which one, how sure, and what would settle it."""
+    _check(json, report, save, pictures=report is not None)
+    model, runs = _load(recordings, arm, columns, effects)
+    from flexarm_env.cli import tables, work
+
+    result = work.diagnose(model, runs, seed, jobs)
+    work.finish("diagnose", arm, runs, seed, json, result.as_json(), tables.diagnosis(result))
+    _save(result.arm, save)
+    if report is not None:
+        work.report(report, work.compare(result.nominal, runs), work.compare(result.arm, runs), result)
+    if result.verdict in ("unknown", "insufficient_data"):
+        raise typer.Exit(1)
+
+
+@app.command()
+def add(
+    effect: Annotated[
+        str, typer.Argument(metavar="EFFECT", help="Name in the catalogue, or FILE.py:Name of your own.")
+    ],
+    recordings: Recordings,
+    arm: ArmName = "thesis",
+    columns: Columns = None,
+    effects: Effects = None,
+    save: Save = None,
+    seed: Seed = 0,
+    json: Json = None,
+) -> None:
+    """Add one effect to an arm and refit: error before, refitted, after. Exit code 1 if it does not fall."""
+    _check(json, save)
+    own = [effect] if ".py:" in effect else []
+    model, runs = _load(recordings, arm, columns, [*(effects or []), *own])
+    from flexarm_env.cli import tables, work
+
+    result = work.add(work.own_name(effect) if own else effect, model, runs, seed)
+    work.finish("add", arm, runs, seed, json, work.addition_json(result), tables.addition(result))
+    _save(result.arm, save, hint=True)
+    if not result.error["final"] < result.error["refitted"]:
+        raise typer.Exit(1)
+
+
+@app.command()
+def fit(
+    recordings: Recordings,
+    arm: ArmName = "thesis",
+    columns: Columns = None,
+    effects: Effects = None,
+    save: Save = None,
+    seed: Seed = 0,
+    json: Json = None,
+) -> None:
+    """Refit the constants of an arm, and add nothing."""
+    _check(json, save)
+    model, runs = _load(recordings, arm, columns, effects)
+    from flexarm_env.cli import tables, work
+
+    result = work.fit(model, runs, seed)
+    work.finish("fit", arm, runs, seed, json, work.fit_json(result), tables.fit(result))
+    _save(result.arm, save, hint=True)
+
+
+@app.command()
+def simulate(
+    save: Annotated[Path, typer.Option(metavar="FILE.csv", help="Write the recording.", show_default=False)],
+    arm: ArmName = "thesis",
+    input: Annotated[
+        str, typer.Option(metavar="INPUT", help="pulse, square, sweep, or a recording whose commands are played.")
+    ] = "pulse",
+    duration: Annotated[float, typer.Option(help="Seconds; a recording brings its own.")] = 10.0,
+    rate: Annotated[float, typer.Option(help="Samples per second; a recording brings its own.")] = 500.0,
+    noise: Annotated[bool, typer.Option(help="Noise and steps of the sensors.")] = True,
+    columns: Columns = None,
+    effects: Effects = None,
+    seed: Seed = 0,
+    json: Json = None,
+) -> None:
+    """Make a recording with an arm's model."""
+    _check(json, save)
+    from flexarm_env.cli import work
+
+    model = _arm(arm, effects)
+    work.simulate(model, arm, input, (duration, rate, seed, noise), columns, save, json)
+
+
+@app.command()
+def effects(
+    name: Annotated[
+        str | None, typer.Argument(metavar="[NAME]", help="An effect, or FILE.py:Name of your own.")
+    ] = None,
+    json: Json = None,
+) -> None:
+    """Show the catalogue of effects, or one effect: equation, parameters, what it looks like in data."""
+    _check(json)
+    from flexarm_env.cli import catalogue
+
+    catalogue.show(name, json)
+
+
+@app.command()
+def demo(
+    output: Annotated[Path, typer.Option(metavar="FOLDER", help="Where pictures, page and numbers go.")] = Path(
+        "results/demo"
+    ),
+    seed: Seed = 0,
+    json: Json = None,
+) -> None:
+    """Find the effect that is hidden in three recordings, add it, and draw how the error falls."""
+    _check(json, pictures=True)
+    from flexarm_env.demo.story import tell
+
+    if not tell(output, seed, json):
+        raise typer.Exit(1)
+
+
+@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+def bench(context: typer.Context) -> None:
+    """Measure speed and accuracy (in a source tree)."""
+    from flexarm_env.cli import work
+
+    raise typer.Exit(work.bench(context.args))
+
+
+def _check(*places: Path | None, pictures: bool = False) -> None:
+    from flexarm_env.cli import outputs
+
+    outputs.check_place(*places)
+    if pictures:
+        outputs.need_plots()
+
+
+def _arm(name: str, specs: Sequence[str] | None) -> Arm:
+    from flexarm_env.arm import Arm
+    from flexarm_env.cli import inputs
+
+    return Arm.load(name, inputs.known_effects(specs or []))
+
+
+def _load(
+    paths: list[Path], name: str, columns: Path | None, specs: Sequence[str] | None
+) -> tuple[Arm, list[Recording]]:
+    from flexarm_env.cli import inputs
+
+    arm = _arm(name, specs)
+    return arm, inputs.read_recordings(arm, paths, columns)
+
+
+def _save(arm: Arm, path: Path | None, hint: bool = False) -> None:
+    if path is not None:
+        arm.save(path)
+    elif hint:
+        typer.echo("Not saved; --save ARM.toml keeps the arm.", err=True)

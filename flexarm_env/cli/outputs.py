@@ -1,0 +1,118 @@
+"""What the commands write: JSON with its provenance, pages, arm files; each whole or not at all."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import flexarm_env
+from flexarm_env.errors import InputError
+from flexarm_env.identify.recording import Recording
+
+STDOUT = Path("-")
+
+
+def check_place(*paths: Path | None) -> None:
+    """Refuse places that cannot be written, before an hour's work is done.
+
+    Raises:
+        InputError: for a folder that is not there or not writable, or a folder in place of a file.
+    """
+    for path in paths:
+        if path is None or path == STDOUT:
+            continue
+        if path.is_dir():
+            raise InputError(f"cannot write {path}: it is a folder; name a file in it")
+        if not path.parent.is_dir():
+            raise InputError(f"cannot write {path}: there is no folder {path.parent}; make it first")
+        if not os.access(path.parent, os.W_OK):
+            raise InputError(f"cannot write {path}: folder {path.parent} is not writable; name another")
+
+
+def need_plots() -> None:
+    """Refuse pictures where their library is missing."""
+    missing = [name for name in ("plotly", "matplotlib") if importlib.util.find_spec(name) is None]
+    if missing:
+        raise InputError(f"pictures need {' and '.join(missing)}; pip install 'flexarm-env[plots]'")
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a text file, whole or not at all.
+
+    Raises:
+        InputError: if the place cannot be written.
+    """
+    draft = None
+    try:
+        with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False, encoding="utf-8", newline="\n") as file:
+            draft = file.name
+            file.write(text)
+        # A temporary file is for its owner only; this one is to be like any other.
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(draft, 0o666 & ~mask)
+        os.replace(draft, path)
+    except OSError as error:
+        if draft is not None:
+            Path(draft).unlink(missing_ok=True)
+        raise InputError(
+            f"cannot write {path}: {error.strerror}; name a folder that exists and can be written"
+        ) from None
+
+
+def write_json(path: Path | None, content: Mapping[str, Any]) -> None:
+    """Write a result as JSON to a file, or to stdout for "-"; numbers that are none become null."""
+    if path is None:
+        return
+    text = json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    if path == STDOUT:
+        sys.stdout.write(text)
+    else:
+        write_whole(path, text)
+
+
+def provenance(command: str, arm: str, recordings: Sequence[Recording], seed: int | None) -> dict[str, Any]:
+    """Return what a reader needs in order to trust or redo a result."""
+    made: dict[str, Any] = {
+        "command": command,
+        "version": flexarm_env.__version__,
+        "commit": commit(),
+        "arm": arm,
+        "recordings": [{"name": r.name, "sha256": r.sha256} for r in recordings],
+    }
+    return made if seed is None else made | {"seed": seed}
+
+
+def commit() -> str | None:
+    """Return the commit of this source tree, with "+" if files differ from it; None where it is no checkout."""
+    here = Path(__file__).resolve().parent.parent
+
+    def git(*arguments: str) -> str:
+        run = subprocess.run(["git", "-C", here, *arguments], capture_output=True, text=True, timeout=5, check=True)
+        return run.stdout.strip()
+
+    try:
+        git("ls-files", "--error-unmatch", "__init__.py")
+        return git("rev-parse", "HEAD") + ("+" if git("status", "--porcelain", "--untracked-files=no", ".") else "")
+    except (OSError, subprocess.SubprocessError):
+        return None
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(entry) for key, entry in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(entry) for entry in value]
+    if hasattr(value, "tolist"):
+        return _plain(value.tolist())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

@@ -1,0 +1,167 @@
+"""Results as short tables for a person."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Sequence
+
+from rich.console import Console, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from flexarm_env.identify.results import Addition, Comparison, Diagnosis, Estimate, Fit, Row
+from flexarm_env.pictures import words
+from flexarm_env.pictures.words import LABELS, NOTHING, PARTS, number
+
+#: Width of a table that goes to a file or a pipe.
+WIDE = 120
+SHORT_RANKING = 8
+
+
+def console(to_stderr: bool = False) -> Console:
+    """Return where tables go: stdout, or stderr while stdout is for JSON."""
+    stream = sys.stderr if to_stderr else sys.stdout
+    return Console(file=stream, width=None if stream.isatty() else WIDE, highlight=False, soft_wrap=not stream.isatty())
+
+
+def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
+    """Return a table whose first column is words and whose others are numbers."""
+    made = Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False, padding=(0, 2))
+    for i, column in enumerate(columns):
+        made.add_column(column, justify="left" if i == 0 else "right", header_style="dim", overflow="fold")
+    for row in rows:
+        made.add_row(*map(Text, row))
+    return made
+
+
+def text_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
+    """Return a table of words."""
+    made = table(title, columns, rows)
+    for column in made.columns:
+        column.justify = "left"
+    return made
+
+
+def show(out: Console, *parts: RenderableType) -> None:
+    """Print parts with an empty line after each."""
+    for part in parts:
+        out.print(part)
+        out.print()
+
+
+def comparison(result: Comparison) -> list[RenderableType]:
+    """Return the tables of a comparison: by signal, by regime and band, by recording."""
+    pooled = _pooled(result.rows)
+    signals = words.signals_of([row.signal for row in pooled])
+    whole = {row.signal: row for row in pooled if row.part == "all"}
+    by_signal = [
+        [LABELS[s][0], *map(number, (whole[s].error, whole[s].free_run)), _percent(whole[s].fit), *_noise(result, s)]
+        for s in signals
+        if s in whole
+    ]
+    by_signal.append(["all", number(result.error), number(result.free_run), "", ""])
+    found = {(row.part, row.signal): row for row in pooled}
+    kinds = list(dict.fromkeys(row.part for row in pooled if row.part != "all"))
+    parts = [p for p in PARTS if p in kinds] + [p for p in kinds if p not in PARTS]
+    by_part = [[part, *(_error(found.get((part, s))) for s in [*signals, "all"])] for part in parts]
+    names = list(dict.fromkeys(row.recording for row in result.rows if row.recording != "all"))
+    each = {(row.recording, row.signal): row for row in result.rows if row.part == "all"}
+    by_recording = [[name, *(_error(each.get((name, s))) for s in [*signals, "all"])] for name in names]
+    heads = [*(LABELS[s][0] for s in signals), "all"]
+    tables: list[RenderableType] = [
+        Text(words.comparison(result), style="bold"),
+        table("Error over noise (1 is perfect)", ["signal", "windows of 1 s", "free run", "fit", "noise"], by_signal),
+        table("… by regime and frequency band, windows of 1 s", ["part", *heads], by_part),
+    ]
+    if len(names) > 1:
+        tables.append(table("… by recording", ["recording", *heads], by_recording))
+    return [*tables, *_notes(result.notes)]
+
+
+def _pooled(rows: Sequence[Row]) -> list[Row]:
+    pooled = [row for row in rows if row.recording == "all"]
+    return pooled or list(rows)
+
+
+def _error(row: Row | None) -> str:
+    return NOTHING if row is None or row.samples == 0 else number(row.error)
+
+
+def _percent(value: float) -> str:
+    return NOTHING if value != value else f"{value:.1f} %"
+
+
+def _noise(result: Comparison, signal: str) -> list[str]:
+    return [f"{number(result.noise[signal], 2)} {LABELS[signal][1]}" if signal in result.noise else NOTHING]
+
+
+def _notes(notes: Sequence[str]) -> list[RenderableType]:
+    return [Text("\n".join(f"- {note}" for note in notes))] if notes else []
+
+
+def steps(steps_: Sequence[tuple[str, float]], free: Sequence[tuple[str, float]]) -> Table:
+    """Return the error after each step."""
+    runs = dict(free)
+    rows = [[name, number(value), number(runs[name]) if name in runs else NOTHING] for name, value in steps_]
+    return table("Held-out error over noise (1 is perfect)", ["step", "windows of 1 s", "free run"], rows)
+
+
+def estimates(title: str, found: Sequence[Estimate]) -> list[RenderableType]:
+    """Return fitted values with intervals, beside the values that they had."""
+    rows = [
+        [
+            words.constant_name(e),
+            words.rounded(e.nominal, e.low, e.high),
+            words.rounded(e.value, e.low, e.high),
+            words.interval(e),
+            words.plain_unit(e.unit),
+        ]
+        for e in found
+    ]
+    return [table(title, ["value", "before", "after", "90 % interval", "unit"], rows)] if rows else []
+
+
+def diagnosis(result: Diagnosis) -> list[RenderableType]:
+    """Return verdict, ranking, error and constants."""
+    free = words.steps_of(result.free_run, result.effects)
+    constants = [e for e in result.constants.values() if not e.path.startswith("effects.") or e.nominal]
+    return [
+        Text(words.verdict(result), style="bold"),
+        *_ranking(result),
+        steps(words.steps_of(result.error, result.effects), free),
+        *estimates("Constants", constants),
+        *_notes(result.notes),
+    ]
+
+
+def _ranking(result: Diagnosis) -> list[RenderableType]:
+    rows = [
+        ["✓" if c.accepted else "", c.effect, f"{100 * c.gain:.0f} %", words.parameters_of(c.estimates)]
+        for c in result.ranking[:SHORT_RANKING]
+    ]
+    if not rows:
+        return []
+    title = "Effects by the share of the excess error that each removes"
+    if len(result.ranking) > SHORT_RANKING:
+        title += f" ({SHORT_RANKING} of {len(result.ranking)}; --json FILE has all)"
+    made = text_table(title, ["", "effect", "gain", "parameters (90 % interval)"], rows)
+    made.columns[2].justify = "right"
+    return [made]
+
+
+def addition(result: Addition) -> list[RenderableType]:
+    """Return what an added effect did."""
+    return [
+        Text(words.addition(result), style="bold"),
+        steps(words.steps_of(result.error, [result.effect]), words.steps_of(result.free_run, [result.effect])),
+        *estimates("Values", result.estimates),
+    ]
+
+
+def fit(result: Fit) -> list[RenderableType]:
+    """Return what refitting did."""
+    return [
+        Text(f"Refitted, the held-out error goes {words.arrows(result.error)} × the noise.", style="bold"),
+        steps(words.steps_of(result.error), words.steps_of(result.free_run)),
+        *estimates("Constants", result.estimates),
+    ]

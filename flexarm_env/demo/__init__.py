@@ -1,0 +1,1 @@
+"""Three recordings with something hidden, and the loop that finds it."""

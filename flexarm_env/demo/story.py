@@ -1,0 +1,101 @@
+"""The loop on the shipped recordings: compare, diagnose, add, compare; numbers and pictures into a folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.text import Text
+
+from flexarm_env.arm import Arm
+from flexarm_env.cli import outputs, tables, work
+from flexarm_env.errors import InputError
+from flexarm_env.identify.recording import Recording
+from flexarm_env.identify.results import Addition, Comparison, Diagnosis
+from flexarm_env.pictures import words
+
+ARM = "thesis-fem"
+JOBS = 2
+#: What an independent simulator was told to hide in the recordings; read only after the diagnosis, for the last line.
+HIDDEN = ("backlash", "gap", 0.06, "rad")
+
+
+def tell(output: Path, seed: int = 0, json: Path | None = None) -> bool:
+    """Run the demonstration; return whether an effect was found.
+
+    Args:
+        output: folder for pictures, page and numbers; it is made.
+        seed: of everything random.
+        json: where else the numbers go.
+
+    Raises:
+        InputError: if the folder cannot be made or written.
+    """
+    _make(output)
+    out = tables.console(to_stderr=json == outputs.STDOUT)
+    arm = Arm.load(ARM)
+    recordings = Recording.read_all(Path(__file__).parent)
+    before = work.compare(arm, recordings)
+    _heading(out, f"flexarm compare RECORDINGS --arm {ARM}", words.comparison(before))
+    diagnosis = work.diagnose(arm, recordings, seed, JOBS)
+    _heading(out, f"flexarm diagnose RECORDINGS --arm {ARM}", words.verdict(diagnosis))
+    content: dict[str, Any] = {"compare": work.comparison_json(before), "diagnose": diagnosis.as_json()}
+    added, after = None, work.compare(diagnosis.arm, recordings)
+    if diagnosis.verdict == "effects":
+        added = work.add(diagnosis.effects[0], arm, recordings, seed)
+        after = work.compare(added.arm, recordings)
+        _heading(out, f"flexarm add {added.effect} RECORDINGS --arm {ARM}", words.addition(added))
+        tables.show(out, tables.steps(*_steps(added)))
+        _heading(out, "flexarm compare RECORDINGS --arm THE-NEW-ARM", words.comparison(after))
+        content |= {"add": work.addition_json(added), "compare_after": work.comparison_json(after)}
+    out.print(Text(_resolve(added)))
+    made = _draw(output, before, after, diagnosis)
+    content |= outputs.provenance("demo", ARM, recordings, seed)
+    outputs.write_json(output / "demo.json", content)
+    outputs.write_json(json, content)
+    out.print(Text(f"In {output}: {', '.join(path.name for path in [*made, output / 'demo.json'])}"))
+    return added is not None and added.error["final"] < added.error["refitted"]
+
+
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot make folder {folder}: {error.strerror}; name another with --output") from None
+    outputs.check_place(folder / "demo.json")
+
+
+def _heading(out: Console, command: str, sentence: str) -> None:
+    tables.show(out, Text.assemble((f"$ {command}\n", "dim"), (sentence, "bold")))
+
+
+def _steps(added: Addition) -> tuple[list[tuple[str, float]], list[tuple[str, float]]]:
+    return words.steps_of(added.error, [added.effect]), words.steps_of(added.free_run, [added.effect])
+
+
+def _resolve(added: Addition | None) -> str:
+    """Say what was hidden, beside what was found."""
+    effect, parameter, size, unit = HIDDEN
+    hidden = f"Hidden in the recordings, by a simulator that shares no code with this: {effect}, {parameter} = {size} {unit}."
+    found = None
+    if added is not None and added.effect == effect:
+        found = next((e for e in added.estimates if e.path == f"effects.{effect}.{parameter}"), None)
+    return hidden if found is None else f"{hidden} Found: {words.value_of(found)}."
+
+
+def _draw(output: Path, before: Comparison, after: Comparison, diagnosis: Diagnosis) -> list[Path]:
+    """Write the pictures and the page; return their paths."""
+    from flexarm_env.pictures import curves
+
+    names = ("as given", f"with {' and '.join(diagnosis.effects)}" if diagnosis.effects else "refitted")
+    steps = words.steps_of(diagnosis.error, diagnosis.effects)
+    free = words.steps_of(diagnosis.free_run, diagnosis.effects)
+    made = [
+        *curves.save(curves.loop(before, after, diagnosis), output / "loop"),
+        *curves.save(curves.overlay(before, after, "square", names), output / "overlay"),
+        *curves.save(curves.waterfall(steps, free), output / "waterfall"),
+    ]
+    page = output / "report.html"
+    work.report(page, before, after, diagnosis)
+    return [*made, page]

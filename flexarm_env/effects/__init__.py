@@ -1,0 +1,8 @@
+"""The catalogue of effects: one file each in this folder, and those that others register."""
+
+from __future__ import annotations
+
+from flexarm_env.effects.base import Effect
+from flexarm_env.effects.catalogue import Catalogue, catalogue, load_effect
+
+__all__ = ["Catalogue", "Effect", "catalogue", "load_effect"]

@@ -1,0 +1,79 @@
+"""What an effect is: parameters, an equation, and one or more ports through which it acts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import ClassVar
+
+from flexarm_env.parameters import Parameter
+
+
+class Effect:
+    """A physical effect that an arm may have. Subclasses state what follows and give at least one port.
+
+    Ports are static methods; an effect without the port leaves it out.
+
+    - ``structure(structure, <parameters>)`` edits the arm's linear quantities (`flexarm_env.plant.structure.Structure`).
+    - ``friction(<named quantities>, <parameters>)`` returns what the effect adds to the budget of dry friction [Nm], from any
+      of direction (±1), speed (along the direction, ≥ 0) [rad/s], angle [rad], time [s], at_rest (bool).
+    - ``torque(…)`` returns a torque on the hub [Nm], from any of angle, speed, time.
+    - ``drag(…)`` returns a force per length on the beam [N/m], from velocity [m/s].
+    - ``drive(…)`` returns the command that gets through [A or V], from command, previous, interval [s].
+
+    The last four run in the compiled kernel: plain arithmetic and `math` only.
+
+    Attributes:
+        name: as in arm files and on the command line.
+        equation: for a person.
+        parameters: by name, in the order in which the ports take them.
+        looks_like: what it looks like in data.
+        confused_with: effects that look alike in most data.
+        source: paper or textbook.
+        varies: whether its friction changes while the hub turns one way.
+        needs: what the arm must have: "beam", or names of signals.
+        fitted: whether its parameters can be fitted (a count cannot).
+    """
+
+    name: ClassVar[str]
+    equation: ClassVar[str]
+    parameters: ClassVar[Mapping[str, Parameter]]
+    looks_like: ClassVar[str]
+    confused_with: ClassVar[tuple[str, ...]] = ()
+    source: ClassVar[str] = ""
+    varies: ClassVar[bool] = False
+    needs: ClassVar[tuple[str, ...]] = ()
+    fitted: ClassVar[bool] = True
+
+    @classmethod
+    def port(cls, name: str) -> Callable[..., float] | None:
+        """Return the function of a port, or None."""
+        found: Callable[..., float] | None = getattr(cls, name, None)
+        return found
+
+    @classmethod
+    def absent(cls, values: Mapping[str, float]) -> bool:
+        """Whether these values make the effect vanish: every size parameter at its null."""
+        sizes = [(values[key], p.null) for key, p in cls.parameters.items() if p.null is not None]
+        return bool(sizes) and all(value == null for value, null in sizes)
+
+    @classmethod
+    def starts(cls) -> list[dict[str, float]]:
+        """Sets of values from which a search for the effect in data should start."""
+        typical = {key: p.typical for key, p in cls.parameters.items()}
+        return [typical]
+
+    @classmethod
+    def size(cls) -> str:
+        """Name of the parameter that says how strong the effect is."""
+        return next((key for key, p in cls.parameters.items() if p.null is not None), next(iter(cls.parameters)))
+
+
+def torque_size(meaning: str, typical: float = 0.05, low: float = 0.0) -> Parameter:
+    """A torque at the hub whose null is zero."""
+    return Parameter("N*m", low, 1e4, typical, null=0.0, meaning=meaning)
+
+
+def finite(value: float) -> bool:
+    """Whether a value is a usable number."""
+    return math.isfinite(value)

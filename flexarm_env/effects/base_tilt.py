@@ -1,0 +1,32 @@
+"""Gravity on an arm whose axis is not quite upright."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+from flexarm_env.effects.base import Effect, torque_size
+from flexarm_env.parameters import Parameter
+
+
+class BaseTilt(Effect):
+    """Gravity on an arm whose axis is not quite upright."""
+
+    name = "base_tilt"
+    equation = "τ = g sin(θ − θ₀)"
+    parameters: ClassVar = {
+        "torque": torque_size("largest torque of gravity on the hub", 0.05),
+        "uphill": Parameter("rad", -6.3, 6.3, 0.0, meaning="θ₀, where the arm points uphill and balances"),
+    }
+    looks_like = "missing torque is one period of a sine over a full turn of the arm"
+    confused_with = ("cable_stiffness", "constant_torque")
+
+    @staticmethod
+    def torque(angle, torque, uphill):
+        """G sin(θ − θ₀)."""
+        return torque * math.sin(angle - uphill)
+
+    @classmethod
+    def starts(cls) -> list[dict[str, float]]:
+        """Four directions of the slope."""
+        return [{"torque": 0.05, "uphill": uphill} for uphill in (-1.5, 0.0, 1.5, 3.0)]

@@ -1,0 +1,111 @@
+"""Which effects exist: those of this folder, of the entry-point group `flexarm_env.effects`, and files that a person names."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import inspect
+import pkgutil
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from functools import lru_cache
+from importlib.metadata import entry_points
+from pathlib import Path
+
+from flexarm_env.effects.base import Effect
+from flexarm_env.errors import InputError, did_you_mean
+
+#: Ports that run in the compiled kernel.
+LAW_PORTS = ("friction", "torque", "drag", "drive")
+
+Law = tuple[str, str, Callable[..., float], tuple[str, ...]]
+
+
+class Catalogue(Mapping[str, type[Effect]]):
+    """Effects by name, in alphabetical order, and the list of laws that the kernel is compiled with."""
+
+    def __init__(self, effects: list[type[Effect]]) -> None:
+        self._effects = {effect.name: effect for effect in sorted(effects, key=lambda e: e.name)}
+        self.laws: list[Law] = []
+        self.kinds: dict[tuple[str, str], int] = {}
+        for name, effect in self._effects.items():
+            for port in LAW_PORTS:
+                function = effect.port(port)
+                if function is not None:
+                    self.kinds[name, port] = len(self.laws)
+                    self.laws.append((port, name, function, tuple(effect.parameters)))
+
+    def __getitem__(self, name: str) -> type[Effect]:
+        if name not in self._effects:
+            raise InputError(f"unknown effect '{name}'{did_you_mean(name, self._effects)}")
+        return self._effects[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._effects
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._effects)
+
+    def __len__(self) -> int:
+        return len(self._effects)
+
+    def extended(self, *effects: type[Effect]) -> Catalogue:
+        """Return a catalogue with more effects; one of the same name takes the place of the old."""
+        names = {effect.name for effect in effects}
+        return Catalogue([e for e in self._effects.values() if e.name not in names] + list(effects))
+
+
+@lru_cache(maxsize=1)
+def catalogue() -> Catalogue:
+    """Return the effects of this folder and of installed packages that register some."""
+    package = importlib.import_module("flexarm_env.effects")
+    found = []
+    for module in pkgutil.iter_modules(package.__path__):
+        if module.name not in ("base", "catalogue"):
+            found += _effects_in(importlib.import_module(f"flexarm_env.effects.{module.name}"))
+    found += [point.load() for point in entry_points(group="flexarm_env.effects")]
+    return Catalogue(found)
+
+
+def _effects_in(module: object) -> list[type[Effect]]:
+    return [
+        member
+        for member in vars(module).values()
+        if inspect.isclass(member) and issubclass(member, Effect) and "name" in vars(member)
+    ]
+
+
+def load_effect(spec: str) -> type[Effect]:
+    """Load a person's own effect from "FILE.py:Name". This runs the file: name only files that you trust.
+
+    Raises:
+        InputError: for a file or class that is not there, or a class that is no effect.
+    """
+    path_text, _, name = spec.rpartition(":")
+    path = Path(path_text)
+    if not path_text or not path.is_file():
+        raise InputError(f"no effect in '{spec}': write FILE.py:Name, with a file that exists")
+    module_name = f"flexarm_user_{path.stem}"
+    module_spec = importlib.util.spec_from_file_location(module_name, path)
+    if module_spec is None or module_spec.loader is None:
+        raise InputError(f"'{path}' is no Python file: write FILE.py:Name")
+    module = importlib.util.module_from_spec(module_spec)
+    sys.modules[module_name] = module
+    try:
+        module_spec.loader.exec_module(module)
+    except Exception as error:
+        raise InputError(f"{path} does not load: {type(error).__name__}: {error}") from error
+    found = {effect.__name__: effect for effect in _effects_in(module)}
+    if name not in found:
+        raise InputError(f"{path} has no effect '{name}'{did_you_mean(name, found)}")
+    return checked(found[name])
+
+
+def checked(effect: type[Effect]) -> type[Effect]:
+    """Return the effect if it is whole, else say what it lacks."""
+    for attribute in ("name", "equation", "parameters", "looks_like"):
+        if not hasattr(effect, attribute):
+            raise InputError(f"effect {effect.__name__} lacks '{attribute}'")
+    if not any(effect.port(port) for port in ("structure", *LAW_PORTS)):
+        raise InputError(f"effect {effect.__name__} has no port: give it one of structure, {', '.join(LAW_PORTS)}")
+    return effect

@@ -1,0 +1,27 @@
+"""An amplifier whose output cannot change faster than a limit."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+from flexarm_env.effects.base import Effect
+from flexarm_env.parameters import Parameter
+
+
+class RateLimit(Effect):
+    """An amplifier whose output cannot change faster than a limit."""
+
+    name = "rate_limit"
+    equation = "|di/dt| ≤ r"
+    parameters: ClassVar = {
+        "rate": Parameter("1/s", 0.0, math.inf, 200.0, null=math.inf, meaning="r, in A/s or V/s")
+    }
+    looks_like = "steps of the command come as ramps, small changes come through"
+    confused_with = ("current_lag", "saturation")
+    source = "thesis section 2.4"
+
+    @staticmethod
+    def drive(command, previous, interval, rate):
+        """The command, at most r·interval from the one before."""
+        return min(max(command, previous - rate * interval), previous + rate * interval)

@@ -1,0 +1,113 @@
+"""The numbers that a fit moves: which values of an arm, on which scale, with which prior."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+
+Floats = NDArray[np.float64]
+
+#: A fit sees an unbounded prior as this many typical sizes wide, so that a direction without information stays put.
+WIDEST = 30.0
+SENSOR_SPREAD = {"arm_angle": 0.0, "motor_speed": 0.03, "strain_mid": 0.15, "strain_base": 0.15, "tip_deflection": 0.15}
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """One fitted value, as origin · exp(x) where it keeps its sign, else as origin + scale · x.
+
+    Attributes:
+        path: in the arm.
+        origin: value at x = 0.
+        scale: of the linear form; 0 for the exponential one.
+        prior: standard deviation of x.
+        low: smallest value.
+        high: largest value.
+    """
+
+    path: str
+    origin: float
+    scale: float
+    prior: float
+    low: float
+    high: float
+
+    def value(self, x: float) -> float:
+        """Return the physical value at x, within the bounds."""
+        raw = self.origin + self.scale * x if self.scale else self.origin * math.exp(min(max(x, -20.0), 20.0))
+        return min(max(raw, self.low), self.high)
+
+    def x_of(self, value: float) -> float:
+        """Return x for a physical value."""
+        return (value - self.origin) / self.scale if self.scale else math.log(value / self.origin)
+
+    def slope(self, x: float) -> float:
+        """Return d value / d x."""
+        return self.scale or self.value(x)
+
+
+def base_coordinates(arm: Arm, nominal: Arm) -> list[Coordinate]:
+    """Return what a refit of the constants moves: all with a spread, around their values in the nominal arm."""
+    found = []
+    for section, table in arm.constants.items():
+        for key in table:
+            path = f"{section}.{key}"
+            found += _with_prior(path, nominal.value(path), arm.parameter(path).spread, arm)
+    for signal in arm.sensors:
+        path = f"sensors.{signal}.gain"
+        found += _with_prior(path, nominal.value(path), SENSOR_SPREAD[signal], arm)
+    for name in arm.effects:
+        if name in nominal.effects:
+            found += effect_coordinates(arm, name, nominal)
+    return found
+
+
+def _with_prior(path: str, value: float, spread: float, arm: Arm) -> list[Coordinate]:
+    if not 0.0 < spread < math.inf or value == 0.0:
+        return []
+    parameter = arm.parameter(path)
+    return [Coordinate(path, value, 0.0, spread, parameter.low, parameter.high)]
+
+
+def effect_coordinates(arm: Arm, name: str, nominal: Arm | None = None) -> list[Coordinate]:
+    """Return the coordinates of an effect's parameters around their present values.
+
+    Args:
+        arm: which has the effect.
+        name: of the effect.
+        nominal: if it has the effect as well, its values are the prior's centre.
+    """
+    effect = arm.known[name]
+    if not effect.fitted:
+        return []
+    found = []
+    for key, parameter in effect.parameters.items():
+        if key in ("arm_angle", "motor_speed", "strain_mid", "strain_base", "tip_deflection") and key not in arm.sensors:
+            continue  # an offset of a sensor that the arm does not have
+        known = nominal is not None and name in nominal.effects
+        value = nominal.value(f"effects.{name}.{key}") if known and nominal else arm.value(f"effects.{name}.{key}")
+        path = f"effects.{name}.{key}"
+        if known and 0.0 < value and parameter.spread < math.inf:
+            found.append(Coordinate(path, value, 0.0, parameter.spread, parameter.low, parameter.high))
+        elif parameter.null == math.inf or (parameter.low > 0.0 and parameter.null is None):
+            found.append(Coordinate(path, value, 0.0, 3.0, parameter.low, parameter.high))
+        else:
+            scale = parameter.typical if parameter.typical > 0.0 else 1.0
+            found.append(Coordinate(path, value, scale, WIDEST, parameter.low, parameter.high))
+    return found
+
+
+def place_values(arm: Arm, coordinates: Sequence[Coordinate], x: Floats) -> Arm:
+    """Return the arm with the values at x."""
+    return arm.with_values({c.path: c.value(float(v)) for c, v in zip(coordinates, x, strict=True)})
+
+
+def position(arm: Arm, coordinates: Sequence[Coordinate]) -> Floats:
+    """Return x of the arm's present values."""
+    return np.array([c.x_of(arm.value(c.path)) for c in coordinates])

@@ -1,0 +1,177 @@
+"""Recordings made ready for identification: whitened, with a start state and a part that is held out."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+from flexarm_env.errors import InputError
+from flexarm_env.identify.recording import Recording
+from flexarm_env.plant.plant import NO_INTERVALS, Plant
+from flexarm_env.signals import INPUTS
+
+Floats = NDArray[np.float64]
+
+#: Share of each recording, at its end, that no fit sees.
+HELD_OUT = 0.35
+#: Noise assumed of a signal whose arm file states none: this share of its range.
+DEFAULT_NOISE = 2e-3
+WINDOW = 1.0
+FEWEST_SAMPLES = 50
+
+
+@dataclass(frozen=True)
+class Run:
+    """One recording as arrays: command (samples,), measured (samples, signals), times, and where it is held out."""
+
+    name: str
+    time: Floats
+    command: Floats
+    measured: Floats
+    intervals: Floats
+    train: NDArray[np.bool_]
+    angle: float
+    speed: float
+    bent: Floats  # beam signals at the start, or zeros
+
+
+@dataclass(frozen=True)
+class Data:
+    """Runs of one arm with their common sampling time [s] and the standard deviation of each signal's noise.
+
+    Attributes:
+        runs: one for each recording.
+        signals: names in the order of the columns.
+        interval: sampling time [s].
+        noise: (signals,) standard deviation, SI units.
+    """
+
+    runs: list[Run]
+    signals: list[str]
+    interval: float
+    noise: Floats
+
+    @functools.cached_property
+    def fitted(self) -> list[Run]:
+        """The runs cut down to the part that fits see."""
+        return [_cut(run, int(run.train.sum())) for run in self.runs]
+
+
+def _cut(run: Run, count: int) -> Run:
+    return replace(
+        run,
+        time=run.time[:count],
+        command=run.command[:count],
+        measured=run.measured[:count],
+        intervals=run.intervals[:count],
+        train=run.train[:count],
+    )
+
+
+def prepare(arm: Arm, recordings: Sequence[Recording]) -> tuple[Arm, Data]:
+    """Return the arm reduced to the sensors that all recordings have, and the recordings as arrays.
+
+    Raises:
+        InputError: for recordings that do not fit the arm.
+    """
+    if not recordings:
+        raise InputError("no recordings: name at least one CSV file or a folder of them")
+    signals = [s for s in arm.signals if all(s in r.signals for r in recordings)]
+    if not signals:
+        raise InputError(f"no signal is in all recordings and in arm '{arm.name}', which has {', '.join(arm.signals)}")
+    for recording in recordings:
+        if recording.input_kind != arm.input:
+            other = next(kind for kind in INPUTS if kind != arm.input)
+            raise InputError(f"{recording.name} holds {other}, but arm '{arm.name}' is driven by {arm.input}")
+        if len(recording) < FEWEST_SAMPLES:
+            raise InputError(f"{recording.name} has {len(recording)} samples; at least {FEWEST_SAMPLES} are needed")
+    intervals = [r.sample_time for r in recordings]
+    interval = float(np.median(intervals))
+    arm = _with_sensors(arm, signals)
+    measured = [np.stack([r.signals[s] for s in signals], axis=1) for r in recordings]
+    noise = _noise(arm, signals, measured)
+    runs = [_run(r, m, signals, noise, interval) for r, m in zip(recordings, measured, strict=True)]
+    return arm, Data(runs, signals, interval, noise)
+
+
+def _with_sensors(arm: Arm, signals: list[str]) -> Arm:
+    return replace(arm, sensors={s: arm.sensors[s] for s in signals})
+
+
+def _noise(arm: Arm, signals: list[str], measured: list[Floats]) -> Floats:
+    stated = [np.hypot(arm.sensors[s]["noise"], arm.sensors[s]["resolution"] / np.sqrt(12.0)) for s in signals]
+    spread = np.ptp(np.concatenate(measured), axis=0)
+    return np.array([n if n > 0.0 else max(DEFAULT_NOISE * w, 1e-12) for n, w in zip(stated, spread, strict=True)])
+
+
+def _run(recording: Recording, measured: Floats, signals: list[str], noise: Floats, interval: float) -> Run:
+    time = recording.time - recording.time[0]
+    steps = np.diff(time)
+    uneven = np.abs(steps - interval).max() > 1e-3 * interval
+    train = time < (1.0 - HELD_OUT) * time[-1]
+    angle, speed = _start(time, measured, signals, noise)
+    beam = np.array([s.startswith("strain") or s == "tip_deflection" for s in signals])
+    first = measured[: max(2, int(0.004 / interval))].mean(axis=0)
+    bent = np.where(beam & (np.abs(first) > 4.0 * noise), first, 0.0)
+    return Run(
+        name=recording.name,
+        time=time,
+        command=np.ascontiguousarray(recording.command),
+        measured=np.ascontiguousarray(measured),
+        intervals=np.append(steps, interval) if uneven else NO_INTERVALS,
+        train=train,
+        angle=angle,
+        speed=speed,
+        bent=bent,
+    )
+
+
+def _start(time: Floats, measured: Floats, signals: list[str], noise: Floats) -> tuple[float, float]:
+    """Angle and speed at the start: zero where the first samples allow it, else the line through them."""
+    if "arm_angle" not in signals:
+        return 0.0, 0.0
+    column = signals.index("arm_angle")
+    angle, sigma = measured[:, column], noise[column]
+    if np.abs(angle[:3]).max() < 4.0 * sigma:
+        still = 0.0
+    else:
+        still = float(angle[0])
+    first = angle[: min(len(angle), 20)]
+    slope, level = np.polyfit(time[: len(first)], first, 1)
+    moved = abs(slope) * time[len(first) - 1]
+    if moved > 6.0 * sigma and "motor_speed" not in signals:
+        return float(level), float(slope)
+    at_rest = np.abs(angle - angle[0]) < 5.0 * sigma
+    length = len(angle) if at_rest.all() else int(np.argmin(at_rest))
+    if still != 0.0 and length > 3:
+        still = float(angle[: max(length // 2, 3)].mean())
+    return still, 0.0
+
+
+def place(plant: Plant, run: Run) -> None:
+    """Put the plant where a run starts."""
+    model = plant.model
+    start = np.zeros(plant.states)
+    size = len(model.names)
+    bodies = plant.bodies
+    start[:bodies] = run.angle
+    start[size : size + bodies] = run.speed
+    if np.any(run.bent) and size > bodies:
+        rows = model.output[:, bodies:size]
+        shape = _first_clamped_shape(model.mass[bodies:, bodies:], model.stiffness[bodies:, bodies:])
+        reading = rows @ shape
+        used = run.bent != 0.0
+        start[bodies:size] = shape * (reading[used] @ run.bent[used]) / (reading[used] @ reading[used])
+    plant.place(start, command=float(run.command[0]))
+
+
+def _first_clamped_shape(mass: Floats, stiffness: Floats) -> Floats:
+    from scipy.linalg import eigh
+
+    _, shapes = eigh(stiffness, mass, subset_by_index=[0, 0])
+    return np.asarray(shapes[:, 0])

@@ -1,0 +1,106 @@
+"""Levenberg–Marquardt on whitened residuals with a Gaussian prior, for models whose Jacobian is dear.
+
+SciPy's least_squares factors the whole Jacobian at each trial; here it is 60,000 rows by 15 columns of replays, so its normal
+equations are formed once per iteration, and columns that hardly change are taken over from an earlier fit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Residual = Callable[[Floats], Floats]
+
+STEP = 1e-3
+LARGEST_STEP = 3.0
+
+
+@dataclass
+class Solution:
+    """Where a fit ended: x, its cost (residual and prior), the residual, its Jacobian there (rows, x)."""
+
+    x: Floats
+    cost: float
+    residual: Floats
+    jacobian: Floats
+
+
+def jacobian(residual: Residual, x: Floats, at_x: Floats, columns: range | None = None) -> Floats:
+    """Return forward differences (rows, columns) of the residual."""
+    chosen = range(len(x)) if columns is None else columns
+    out = np.empty((len(at_x), len(chosen)))
+    for i, k in enumerate(chosen):
+        moved = x.copy()
+        moved[k] += STEP
+        out[:, i] = (residual(moved) - at_x) / STEP
+    return np.nan_to_num(out)
+
+
+def cost_of(residual: Floats, x: Floats, prior: Floats) -> float:
+    """Return the sum of squares of residual and prior; infinite where a replay failed."""
+    total = float(residual @ residual + np.sum((x / prior) ** 2))
+    return total if np.isfinite(total) else np.inf
+
+
+def minimise(
+    residual: Residual,
+    x: Floats,
+    prior: Floats,
+    iterations: int,
+    frozen: Floats | None = None,
+    tolerance: float = 1e-4,
+) -> Solution:
+    """Minimise |residual(x)|² + |x / prior|².
+
+    Args:
+        residual: whitened residual (rows,).
+        x: where to start.
+        prior: standard deviation of each x around 0.
+        iterations: at most so many Jacobians.
+        frozen: Jacobian (rows, first columns) taken over from elsewhere and not computed again.
+        tolerance: relative decrease of the cost at which to stop.
+    """
+    r = residual(x)
+    cost = cost_of(r, x, prior)
+    damping = 1e-3
+    known = 0 if frozen is None else frozen.shape[1]
+    j = np.empty((len(r), len(x)))
+    if frozen is not None:
+        j[:, :known] = frozen
+    for _ in range(iterations):
+        j[:, known:] = jacobian(residual, x, r, range(known, len(x)))
+        normal = j.T @ j + np.diag(prior**-2.0)
+        slope = j.T @ r + x / prior**2
+        before = cost
+        for _ in range(6):
+            step = -np.linalg.solve(normal + damping * np.diag(np.diag(normal)), slope)
+            step = np.clip(step, -LARGEST_STEP, LARGEST_STEP)
+            trial = residual(x + step)
+            new = cost_of(trial, x + step, prior)
+            if new < cost:
+                x, r, cost = x + step, trial, new
+                damping = max(damping * 0.2, 1e-7)
+                break
+            damping *= 6.0
+        if before - cost < tolerance * before:
+            break
+    return Solution(x, cost, r, j)
+
+
+def covariance(j: Floats, residual: Floats, prior: Floats, block: int) -> Floats:
+    """Return the covariance (x, x) of a fit, which holds when the residual is not white.
+
+    Sandwich of the normal equations around the scatter of the gradient summed over blocks of `block` rows (Newey and West,
+    Econometrica 55 (1987) 703, with blocks for lags).
+    """
+    bread = np.linalg.inv(j.T @ j + np.diag(prior**-2.0))
+    count = max(len(residual) // block, 1)
+    rows = residual[: count * block, None] * j[: count * block]
+    sums = rows.reshape(count, block, -1).sum(axis=1)
+    meat = sums.T @ sums + np.diag(prior**-2.0)
+    spread: Floats = bread @ meat @ bread
+    return np.maximum(spread, 0.0) if spread.ndim == 1 else spread

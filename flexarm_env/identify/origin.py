@@ -1,0 +1,42 @@
+"""What a saved arm carries of how its values came about."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from flexarm_env import __version__
+from flexarm_env.arm import Arm
+from flexarm_env.identify.recording import Recording
+from flexarm_env.identify.results import Estimate
+
+
+def with_origin(
+    arm: Arm, fitted: Arm, values: Sequence[Estimate], recordings: Sequence[Recording], command: str, seed: int
+) -> Arm:
+    """Return `arm` with the values and effects of `fitted`, their intervals, and where they come from.
+
+    Args:
+        arm: as it came, with all its sensors.
+        fitted: the same with fitted values, perhaps with fewer sensors.
+        values: the fitted values.
+        recordings: what they were fitted to.
+        command: that made the fit.
+        seed: of everything random.
+    """
+    table: dict[str, dict[str, Any]] = {e.path: e.as_json() for e in values}
+    origin = {
+        "command": command,
+        "version": __version__,
+        "seed": seed,
+        "recordings": [{"name": r.name, "sha256": r.sha256} for r in recordings],
+    }
+    sensors = {**arm.sensors, **fitted.sensors}
+    return replace(
+        fitted,
+        name=arm.name if arm.name.endswith("-fitted") else f"{arm.name}-fitted",
+        sensors={signal: sensors[signal] for signal in arm.sensors},
+        fitted=table,
+        origin=origin,
+    )

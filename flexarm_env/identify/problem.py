@@ -1,0 +1,102 @@
+"""Residuals of an arm against data as a function of its fitted coordinates, at one level of process noise."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.coordinates import Coordinate, place_values
+from flexarm_env.identify.data import Data, Run
+from flexarm_env.identify.observer import physical_gains
+from flexarm_env.identify.predict import replay, window_gains, window_replay
+from flexarm_env.plant.plant import Plant
+
+Floats = NDArray[np.float64]
+
+#: A residual larger than this many of its standard deviations counts as this: one bad moment must not rule a fit.
+LARGEST_RESIDUAL = 1e4
+
+
+@dataclass
+class Problem:
+    """Replays of an arm, whitened.
+
+    Attributes:
+        arm: whose values the coordinates replace.
+        data: the recordings.
+        coordinates: what is fitted.
+        torque_noise: process noise [Nm]; 0 for free replays.
+        sigma: (runs, signals) by which errors are divided.
+        held_out: whether the residual is that of the part held out, not of the part fitted.
+    """
+
+    arm: Arm
+    data: Data
+    coordinates: Sequence[Coordinate]
+    torque_noise: float
+    sigma: Floats
+    held_out: bool = False
+
+    def __post_init__(self) -> None:
+        self._gains: dict[tuple[int, int], Floats] = {}
+
+    def residual(self, x: Floats) -> Floats:
+        """Return (rows,): errors over sigma, run by run, sample by sample, signal by signal."""
+        return self.residual_of(place_values(self.arm, self.coordinates, x))
+
+    def residual_of(self, arm: Arm) -> Floats:
+        """Return the residual of another arm under the same weights."""
+        runs = self.data.runs if self.held_out else self.data.fitted
+        parts = []
+        for run, error, sigma in zip(runs, self._errors(arm, runs), self.sigma, strict=True):
+            parts.append(((error[~run.train] if self.held_out else error) / sigma).ravel())
+        return np.clip(np.nan_to_num(np.concatenate(parts), nan=LARGEST_RESIDUAL), -LARGEST_RESIDUAL, LARGEST_RESIDUAL)
+
+    def errors_of(self, arm: Arm) -> list[Floats]:
+        """Return measured less replayed (samples, signals) of the fitted part of each run, SI units."""
+        return self._errors(arm, self.data.fitted)
+
+    def _errors(self, arm: Arm, runs: Sequence[Run]) -> list[Floats]:
+        plant = arm.plant(self.data.interval)
+        gains = self._gains_for(plant) if self.torque_noise > 0.0 else None
+        return [run.measured - replay(plant, run, gains) for run in runs]
+
+    def _gains_for(self, plant: Plant) -> Floats:
+        key = (plant.modes, plant.states)
+        if key not in self._gains:
+            self._gains[key] = physical_gains(plant, self.data.noise, self.torque_noise, self.data.interval)
+        return self._gains[key]
+
+
+def rms_by_run(errors: Sequence[Floats], data: Data) -> Floats:
+    """Return (runs, signals): the rms error of the part that is fitted, at least the noise."""
+    found = np.array([np.sqrt(np.mean(e**2, axis=0)) for e in errors])
+    return np.maximum(np.nan_to_num(found, nan=np.inf, posinf=1e6), data.noise)
+
+
+@dataclass(frozen=True)
+class Score:
+    """Errors of an arm on one part of the data, rms over noise: in windows of 1 s, and replayed freely."""
+
+    windows: float
+    free_run: float
+
+
+def score(arm: Arm, data: Data, held_out: bool = True) -> Score:
+    """Return the errors of an arm on what was held out, or on what was fitted."""
+    plant = arm.plant(data.interval)
+    gains = window_gains(arm, plant, data)
+    totals = np.zeros(2)
+    count = 0
+    for run in data.runs:
+        rows = ~run.train if held_out else run.train
+        for i, replayed in enumerate((window_replay(plant, run, gains, data.interval), replay(plant, run))):
+            scaled = (run.measured[rows] - replayed[rows]) / data.noise
+            totals[i] += np.sum(np.nan_to_num(scaled, nan=1e6) ** 2)
+        count += int(rows.sum()) * len(data.signals)
+    windows, free = np.sqrt(totals / count)
+    return Score(float(windows), float(free))

@@ -1,0 +1,366 @@
+"""Recordings: what went into an arm and what its sensors said, in SI, read from a file and written to one."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.identify.columns import (
+    UNITS,
+    ColumnMap,
+    check_calibration,
+    check_names,
+    load_columns,
+    si_factor,
+)
+from flexarm_env.identify.readers import (
+    CONDITIONS,
+    Table,
+    fault,
+    read_bytes,
+    read_matlab,
+    read_text_table,
+)
+from flexarm_env.signals import INPUTS, SIGNALS
+
+Floats = NDArray[np.float64]
+PathLike = str | os.PathLike[str]
+Columns = PathLike | Mapping[str, Any] | ColumnMap
+
+GAP = 3.0  # a step of more than this many median steps is a gap
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Recording:
+    """One run of an arm, of n samples in SI. Sampling need not be even.
+
+    Attributes:
+        name: for tables and plots.
+        time: (n,) [s], rising from 0.
+        input_kind: "current" or "voltage".
+        command: (n,) [A or V], what the drive was commanded.
+        signals: (n,) each, by name: arm_angle [rad], motor_speed [rad/s], strain_mid [V], strain_base [V],
+            tip_deflection [m].
+        reference: (n,) [rad] what the arm angle was to follow, or None.
+        conditions: known conditions in SI, such as payload [kg]; `start` [s] is how long the run had gone on
+            before the first sample.
+        source: the path it was read from; "" if from none.
+        sha256: of that file's content; "" if from none.
+        gaps: for each step over three median steps, the index of the sample before it and its length [s].
+    """
+
+    name: str
+    time: Floats
+    input_kind: str
+    command: Floats
+    signals: dict[str, Floats]
+    reference: Floats | None = None
+    conditions: dict[str, float] = field(default_factory=dict)
+    source: str = ""
+    sha256: str = ""
+    gaps: list[tuple[int, float]] = field(init=False)
+
+    def __post_init__(self) -> None:
+        steps = np.diff(self.time)
+        long = np.flatnonzero(steps > GAP * np.median(steps))
+        object.__setattr__(self, "gaps", [(int(i), float(steps[i])) for i in long])
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def __repr__(self) -> str:
+        gaps = f", {len(self.gaps)} gaps" if self.gaps else ""
+        extent = f"{len(self)} samples, {self.duration:.4g} s at {1 / self.sample_time:.4g} Hz{gaps}"
+        return f"Recording({self.name!r}: {extent}, {self.input_kind} -> {', '.join(self.signals)})"
+
+    @property
+    def sample_time(self) -> float:
+        """The median step [s]."""
+        return float(np.median(np.diff(self.time)))
+
+    @property
+    def duration(self) -> float:
+        """Time of the last sample [s]."""
+        return float(self.time[-1])
+
+    @classmethod
+    def from_arrays(
+        cls,
+        name: str,
+        time: ArrayLike,
+        input_kind: str,
+        command: ArrayLike,
+        signals: Mapping[str, ArrayLike],
+        reference: ArrayLike | None = None,
+        conditions: Mapping[str, float] | None = None,
+    ) -> Recording:
+        """Return a recording of copies of (n,) arrays in SI, checked as a file is.
+
+        Args:
+            name: for tables and plots.
+            time: (n,) [s], rising; it is shifted to start at 0.
+            input_kind: "current" or "voltage".
+            command: (n,) [A or V].
+            signals: (n,) each, by name, in SI.
+            reference: (n,) [rad].
+            conditions: known conditions in SI.
+
+        Raises:
+            InputError: for an unknown name, lengths that differ, fewer than two samples, numbers that are not
+                finite, or time that does not rise.
+        """
+        if input_kind not in INPUTS:
+            raise InputError(f"{name}: unknown input {input_kind!r}{did_you_mean(input_kind, INPUTS)}")
+        for signal in signals:
+            if signal not in SIGNALS:
+                raise InputError(f"{name}: unknown signal {signal!r}{did_you_mean(signal, SIGNALS)}")
+        columns = {"time": time, input_kind: command, **signals}
+        if reference is not None:
+            columns["reference"] = reference
+        try:
+            arrays = {column: _array(column, values) for column, values in columns.items()}
+            return _recording(name, arrays, dict(conditions or {}), ())
+        except InputError as error:
+            raise InputError(f"{name}: {error}") from None
+
+    @classmethod
+    def read(
+        cls, path: PathLike, columns: Columns | None = None, calibration: Mapping[str, float] | None = None
+    ) -> Recording:
+        """Return the recording in a CSV file, or by a column map in any text table or .mat file.
+
+        Args:
+            path: the file. Its time is shifted to start at 0.
+            columns: for a foreign file, its `[columns]` table: a TOML file that has one, or a dict.
+            calibration: SI per volt for signals that the file has in volts, such as {"arm_angle": 2.0}.
+
+        Raises:
+            InputError: for anything that is not such a file: one line with file, row and column.
+        """
+        layout = None if columns is None else load_columns(columns)
+        gains = dict(calibration or {})
+        check_calibration(gains)
+        path = Path(path)
+        try:
+            content = read_bytes(path)
+            table = _table(path, content, layout)
+            arrays = {name: _si(name, table, gains) for name in table.values}
+            recording = _recording(path.stem, arrays, table.conditions, table.lines)
+        except InputError as error:
+            raise fault(path, error) from None
+        return replace(recording, source=str(path), sha256=hashlib.sha256(content).hexdigest())
+
+    @classmethod
+    def read_all(
+        cls,
+        paths: PathLike | Iterable[PathLike],
+        columns: Columns | None = None,
+        calibration: Mapping[str, float] | None = None,
+    ) -> list[Recording]:
+        """Return the recordings in files and folders; a folder stands for its CSV files, sorted by name.
+
+        Where names would come twice, they have the folder's name before them.
+
+        Raises:
+            InputError: as `read`; for a folder without CSV files; for a file named twice.
+        """
+        files = _files([paths] if isinstance(paths, (str, os.PathLike)) else paths)
+        layout = None if columns is None else load_columns(columns)
+        recordings = [cls.read(file, layout, calibration) for file in files]
+        return _distinct(recordings)
+
+    def write(self, path: PathLike) -> None:
+        """Write a CSV file that `read` gives back bit for bit; the file is whole or not there.
+
+        Raises:
+            InputError: if the file cannot be written.
+        """
+        columns = {"time": self.time, self.input_kind: self.command}
+        columns |= {name: self.signals[name] for name in SIGNALS if name in self.signals}
+        if self.reference is not None:
+            columns["reference"] = self.reference
+        remarks = [
+            f"# {name} = {value!r} {CONDITIONS.get(name, '')}".rstrip()
+            for name, value in self.conditions.items()
+        ]
+        header = ",".join(f"{name} [{UNITS[name]}]" for name in columns)
+        rows = zip(*(map(repr, values.tolist()) for values in columns.values()), strict=True)
+        _write_whole(Path(path), "\n".join([*remarks, header, *map(",".join, rows), ""]))
+
+    def part(self, start: float = 0.0, stop: float | None = None) -> Recording:
+        """Return the samples with start <= time < stop [s]; without `stop`, up to the end.
+
+        Its time starts at 0 again, and `conditions["start"]` says how long the run had gone on before.
+
+        Raises:
+            InputError: if fewer than two samples lie there.
+        """
+        # A boundary such as 0.3 must find the sample at 0.30000000000000004.
+        slack = 1e-6 * self.sample_time
+        first = int(np.searchsorted(self.time, start - slack))
+        last = len(self) if stop is None else int(np.searchsorted(self.time, stop - slack))
+        if last - first < 2:
+            raise InputError(
+                f"{self.name}: fewer than two samples from {start} to {stop} s; it lasts {self.duration:g} s"
+            )
+        cut = slice(first, last)
+        before = self.conditions.get("start", 0.0) + float(self.time[first])
+        return replace(
+            self,
+            time=self.time[cut] - self.time[first],
+            command=self.command[cut].copy(),
+            signals={name: values[cut].copy() for name, values in self.signals.items()},
+            reference=None if self.reference is None else self.reference[cut].copy(),
+            conditions=self.conditions | ({"start": before} if before else {}),
+        )
+
+
+def _table(path: Path, content: bytes, layout: ColumnMap | None) -> Table:
+    if path.suffix.lower() != ".mat":
+        return read_text_table(content, layout)
+    if layout is None:
+        raise InputError("a .mat file needs a [columns] table that names its variables")
+    if not layout.matlab:
+        raise InputError("is a .mat file, but [columns] names text columns; use 'variable'")
+    return read_matlab(content, layout)
+
+
+def _si(name: str, table: Table, calibration: Mapping[str, float]) -> Floats:
+    """Return a column in SI; time from its first sample on, taken before scaling so that nothing is lost."""
+    factor = si_factor(name, table.sources[name], calibration)
+    values = table.values[name]
+    with np.errstate(over="ignore", invalid="ignore"):  # what overflows is reported with its row
+        return (values - values[0] if name == "time" else values) * factor
+
+
+def _array(name: str, values: ArrayLike) -> Floats:
+    try:
+        array = np.array(values)
+    except ValueError:  # a ragged list
+        array = np.array(None)
+    if array.ndim != 1 or array.dtype.kind not in "fiu":
+        raise InputError(f"'{name}' is no vector of real numbers; give an array of shape (n,)")
+    return array.astype(np.float64)
+
+
+def _recording(
+    name: str, arrays: dict[str, Floats], conditions: dict[str, float], lines: Sequence[int]
+) -> Recording:
+    """Return a recording of (n,) arrays in SI, by column name, after checking them.
+
+    `lines` has the line of each sample in its file, for messages; it is empty where there is none.
+    """
+    kind = check_names(tuple(arrays))
+    lengths = {column: len(values) for column, values in arrays.items()}
+    if len(set(lengths.values())) > 1:
+        raise InputError(f"lengths differ ({lengths}); give arrays of one length")
+    if lengths["time"] < 2:
+        raise InputError(f"has {lengths['time']} samples; it needs at least two")
+    with np.errstate(over="ignore", invalid="ignore"):
+        arrays["time"] = arrays["time"] - arrays["time"][0]
+    _check_samples(arrays, lines)
+    _check_conditions(conditions)
+    return Recording(
+        name=name,
+        time=arrays["time"],
+        input_kind=kind,
+        command=arrays[kind],
+        signals={signal: arrays[signal] for signal in SIGNALS if signal in arrays},
+        reference=arrays.get("reference"),
+        conditions=conditions,
+    )
+
+
+def _check_samples(arrays: Mapping[str, Floats], lines: Sequence[int]) -> None:
+    """Raise InputError at the first number that is not finite, or step of time that does not go up."""
+
+    def place(sample: int) -> str:
+        return f"row {lines[sample]}" if lines else f"sample {sample + 1}"
+
+    for column, values in arrays.items():
+        bad = np.flatnonzero(~np.isfinite(values))
+        if bad.size:
+            raise InputError(
+                f"{place(bad[0])}, column '{column}': is {values[bad[0]]}; correct it or remove the row"
+            )
+    time = arrays["time"]
+    back = np.flatnonzero(np.diff(time) <= 0)
+    if back.size:
+        i = int(back[0])
+        what = "repeats" if time[i + 1] == time[i] else "goes back"
+        raise InputError(
+            f"{place(i + 1)}, column 'time': {what}, {time[i + 1]:.9g} s after {time[i]:.9g} s"
+            " (from the first sample); sort the rows and remove repeated ones"
+        )
+
+
+def _check_conditions(conditions: Mapping[str, float]) -> None:
+    for name, value in conditions.items():
+        if not name.isidentifier() or not name.isascii():
+            raise InputError(f"condition {name!r}: write its name in letters, digits and _")
+        if not math.isfinite(value) or (name == "payload" and value < 0):
+            raise InputError(
+                f"condition '{name}' is {value}; write a finite number, for payload one not below 0"
+            )
+
+
+def _files(paths: Iterable[PathLike]) -> list[Path]:
+    """Return the files that paths name, folders replaced by their CSV files, in order."""
+    files: list[Path] = []
+    for path in map(Path, paths):
+        try:
+            inside = sorted(p for p in path.iterdir() if _is_csv(p)) if path.is_dir() else [path]
+        except OSError as error:
+            raise fault(path, f"cannot be read: {error.strerror}; check its permissions") from None
+        if not inside:
+            raise fault(path, "a folder without CSV files; name the files, or another folder")
+        files += inside
+    if not files:
+        raise InputError("no recordings; name a file or a folder")
+    places = [os.path.realpath(file) for file in files]
+    for i, place in enumerate(places):
+        if place in places[:i]:
+            raise fault(files[i], "named twice; name each recording once")
+    return files
+
+
+def _distinct(recordings: list[Recording]) -> list[Recording]:
+    """Return recordings whose names differ: by their folder, else by their path."""
+    sources = [Path(recording.source) for recording in recordings]
+    for names in (
+        [source.stem for source in sources],
+        [f"{source.parent.name}/{source.stem}" for source in sources],
+        [str(source) for source in sources],
+    ):
+        if len(set(names)) == len(names):
+            break
+    return [replace(recording, name=name) for recording, name in zip(recordings, names, strict=True)]
+
+
+def _is_csv(path: Path) -> bool:
+    return path.suffix.lower() == ".csv" and not path.name.startswith(".") and not path.is_dir()
+
+
+def _write_whole(path: Path, text: str) -> None:
+    """Write a file beside its place, then move it there."""
+    draft = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        try:
+            with draft.open("x", encoding="utf-8", newline="\n") as file:
+                file.write(text)
+                file.flush()
+                os.fsync(file.fileno())
+            os.replace(draft, path)
+        finally:
+            draft.unlink(missing_ok=True)
+    except OSError as error:
+        raise fault(path, f"cannot be written: {error.strerror}; check folder and disk") from None

@@ -1,0 +1,221 @@
+"""What comparing, fitting, adding and diagnosing return."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A fitted value with its 90 % interval, in SI units.
+
+    Attributes:
+        path: where it stands in the arm file, as "beam.length".
+        value: the fitted value.
+        low: lower end of the 90 % interval.
+        high: upper end.
+        unit: of all three.
+        nominal: the value before the fit.
+    """
+
+    path: str
+    value: float
+    low: float
+    high: float
+    unit: str
+    nominal: float
+
+    def as_json(self) -> dict[str, Any]:
+        """Value, interval and unit, for machines."""
+        return {"value": self.value, "unit": self.unit, "low": self.low, "high": self.high}
+
+
+@dataclass(frozen=True)
+class Replay:
+    """One recording beside the model's replay of it.
+
+    Attributes:
+        name: of the recording.
+        time: (samples,) [s].
+        measured: (samples,) by signal, SI units.
+        free: (samples,) by signal: replayed once from the start.
+        windows: (samples,) by signal: replayed in windows of 1 s from estimated states.
+        regime: (samples,) 0 stuck, 1 moving slowly, 2 moving fast, from the model's free motion.
+    """
+
+    name: str
+    time: Floats
+    measured: dict[str, Floats]
+    free: dict[str, Floats]
+    windows: dict[str, Floats]
+    regime: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of a comparison: the errors of one signal in one part of the data.
+
+    Attributes:
+        recording: its name, or "all".
+        signal: its name, or "all".
+        part: "all", a regime ("moving fast", "moving slowly", "stuck") or a frequency band ("0-2 Hz", …).
+        error: rms error over the noise's standard deviation, in windows of 1 s from estimated states; 1 is perfect.
+        free_run: the same, replayed once from the start; NaN for a frequency band.
+        fit: 100 (1 − ‖e‖/‖y − ȳ‖) of the free run [%]; NaN where it has no meaning.
+        samples: how many samples went in.
+    """
+
+    recording: str
+    signal: str
+    part: str
+    error: float
+    free_run: float
+    fit: float
+    samples: int
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """An arm against recordings: where it fails.
+
+    Attributes:
+        arm: the arm.
+        rows: the errors by recording, signal, regime and band.
+        replays: the curves.
+        noise: standard deviation of each signal's noise, SI units.
+        error: rms over noise of everything, in windows of 1 s.
+        free_run: the same, replayed once from the start.
+        notes: what the check of the recordings found, a line each (gaps, saturation, poor excitation).
+    """
+
+    arm: Arm
+    rows: list[Row]
+    replays: list[Replay]
+    noise: dict[str, float]
+    error: float
+    free_run: float
+    notes: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Fit:
+    """An arm with its constants refitted.
+
+    Attributes:
+        arm: the refitted arm, which carries the intervals.
+        estimates: every fitted value.
+        error: "nominal", "refitted": rms over noise on what was held out, in windows of 1 s.
+        free_run: the same, replayed once from the start.
+        seconds: time taken.
+    """
+
+    arm: Arm
+    estimates: list[Estimate]
+    error: dict[str, float]
+    free_run: dict[str, float]
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Addition:
+    """An arm with one effect more.
+
+    Attributes:
+        arm: the new arm.
+        effect: what was added.
+        estimates: the effect's parameters, then the constants.
+        error: "nominal", "refitted" (constants only), "final" (with the effect): rms over noise, held out, windows of 1 s.
+        free_run: the same, replayed once from the start.
+        seconds: time taken.
+    """
+
+    arm: Arm
+    effect: str
+    estimates: list[Estimate]
+    error: dict[str, float]
+    free_run: dict[str, float]
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One effect in the ranking.
+
+    Attributes:
+        effect: its name.
+        gain: share of the refitted model's excess held-out error that it removes, 0 to 1.
+        accepted: whether the diagnosis takes it.
+        estimates: its fitted parameters.
+    """
+
+    effect: str
+    gain: float
+    accepted: bool
+    estimates: list[Estimate]
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What is wrong with an arm, and the arm that is better.
+
+    Attributes:
+        verdict: "nothing_missing", "parameters", "effects", "unknown" or "insufficient_data".
+        effects: those accepted, in the order of their weight.
+        equivalent: for each accepted effect, all that these data cannot tell from it, itself first.
+        ranking: candidates by gain.
+        error: "nominal", "refitted", "final", and one entry after each accepted effect under its name; rms over noise, held
+            out, windows of 1 s.
+        free_run: the same, replayed once from the start.
+        constants: all fitted values of the final arm by short name.
+        arm: the corrected arm.
+        nominal: the arm that came in.
+        refitted: the arm with only its constants refitted.
+        notes: a sentence each for a person: preflight findings, what drives an unexplained error, what would settle it.
+        seconds: time taken.
+        seed: of everything random.
+    """
+
+    verdict: str
+    effects: list[str]
+    equivalent: list[list[str]]
+    ranking: list[Candidate]
+    error: dict[str, float]
+    free_run: dict[str, float]
+    constants: dict[str, Estimate]
+    arm: Arm
+    nominal: Arm
+    refitted: Arm
+    notes: list[str]
+    seconds: float
+    seed: int
+
+    def as_json(self) -> dict[str, Any]:
+        """Return plain data for `--json`."""
+        return {
+            "verdict": self.verdict,
+            "effects": self.effects,
+            "equivalent": self.equivalent,
+            "ranking": [
+                {
+                    "effect": c.effect,
+                    "gain": c.gain,
+                    "accepted": c.accepted,
+                    "parameters": {e.path.split(".")[-1]: e.as_json() for e in c.estimates},
+                }
+                for c in self.ranking
+            ],
+            "error": self.error,
+            "free_run": self.free_run,
+            "constants": {name: e.as_json() for name, e in self.constants.items()},
+            "notes": self.notes,
+            "seconds": round(self.seconds, 1),
+            "seed": self.seed,
+        }

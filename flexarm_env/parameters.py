@@ -1,0 +1,96 @@
+"""What a parameter is, and the base constants that every arm has."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from flexarm_env.signals import SIGNALS
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A physical quantity that an arm file may set and that a fit may move.
+
+    Attributes:
+        unit: pint unit of the plain number ("" for a ratio).
+        low: smallest value allowed.
+        high: largest value allowed.
+        typical: a usual size, from which a search starts and against which a step is judged.
+        null: the value at which the effect is absent; None where no single value means absence.
+        spread: relative standard deviation that a fit assumes of the value in an arm file;
+            0 keeps the value as it is, infinity (the default of an effect's parameter) lets data decide.
+        meaning: one line for a person.
+        source: equation, table or paper.
+    """
+
+    unit: str
+    low: float
+    high: float
+    typical: float
+    null: float | None = None
+    spread: float = float("inf")
+    meaning: str = ""
+    source: str = ""
+
+
+TABLE = "thesis Table A.1"
+
+DRIVE = {
+    "torque_constant": Parameter("Nm/A", 1e-6, 1e4, 0.33, spread=0.15, meaning="motor torque per current, and back-EMF per speed", source="thesis App. A"),
+    "gear_ratio": Parameter("", 1e-3, 1e4, 1.5, spread=0.0, meaning="motor turns per arm turn", source=TABLE),
+    "motor_inertia": Parameter("kg*m**2", 0.0, 1e4, 0.00193, spread=0.3, meaning="rotor and motor gear, motor side", source=TABLE),
+    "resistance": Parameter("ohm", 0.0, 1e6, 1.35, spread=0.0, meaning="armature resistance (voltage drive only)", source="thesis App. A, experiment 1"),
+    "limit": Parameter("", 0.0, 1e6, 5.0, spread=0.0, meaning="largest command, in A or V", source="thesis section 4.2"),
+    "torque_noise": Parameter("N*m", 0.0, 1e4, 0.0, spread=0.0, meaning="disturbance at the hub in each sample that no model need explain"),
+    "gear_stiffness": Parameter("N*m/rad", 0.0, 1e9, 4000.0, spread=0.0, meaning="of the touching gears, arm side; 0: motor and hub are one body"),
+    "motor_coulomb_share": Parameter("", 0.0, 1.0, 0.351, spread=0.0, meaning="part of dry friction on the motor side of the gears", source=TABLE),
+    "motor_viscous_share": Parameter("", 0.0, 1.0, 0.0177, spread=0.0, meaning="part of viscous friction on the motor side of the gears", source=TABLE),
+}
+HUB = {
+    "inertia": Parameter("kg*m**2", 0.0, 1e4, 0.00129, spread=0.3, meaning="all that turns with the hub, without the beam", source=TABLE),
+}
+BEAM = {
+    "elements": Parameter("", 1, 16, 1, spread=0.0, meaning="finite elements", source="thesis section 3.1"),
+    "length": Parameter("m", 1e-3, 1e2, 1.0, spread=0.0, meaning="from the hub's axis to the tip", source="thesis section 3.3"),
+    "mass_per_length": Parameter("kg/m", 1e-6, 1e4, 0.42381, spread=0.15, source="thesis section 3.4"),
+    "bending_stiffness": Parameter("N*m**2", 1e-6, 1e8, 7.911324, spread=0.15, meaning="E times I", source="thesis section 3.4"),
+    "tip_mass": Parameter("kg", 0.0, 1e3, 0.0, spread=0.0, meaning="known mass at the tip"),
+    "tip_inertia": Parameter("kg*m**2", 0.0, 1e3, 0.0, spread=0.0, meaning="known inertia of the tip mass about the tip"),
+}
+SECTIONS: dict[str, dict[str, Parameter]] = {"drive": DRIVE, "hub": HUB, "beam": BEAM}
+
+#: Values that an arm file may leave out.
+DEFAULTS: dict[str, dict[str, float]] = {
+    "drive": {
+        "resistance": 0.0,
+        "limit": 0.0,
+        "torque_noise": 0.0,
+        "gear_stiffness": 0.0,
+        "motor_coulomb_share": 0.351,
+        "motor_viscous_share": 0.0177,
+    },
+    "hub": {},
+    "beam": {"tip_mass": 0.0, "tip_inertia": 0.0},
+}
+
+#: What a sensor's table may hold. Offset, noise and resolution are in the signal's own unit.
+SENSOR = {
+    "gain": Parameter("", -1e6, 1e6, 1.0, spread=0.1, meaning="reading per quantity"),
+    "offset": Parameter("", -1e6, 1e6, 0.0, spread=0.0, meaning="reading at zero"),
+    "noise": Parameter("", 0.0, 1e6, 0.0, spread=0.0, meaning="standard deviation of the reading"),
+    "resolution": Parameter("", 0.0, 1e6, 0.0, spread=0.0, meaning="step of the reading"),
+    "filter": Parameter("s", 0.0, 10.0, 0.0, spread=0.0, meaning="time constant of a first-order filter"),
+    "delay": Parameter("s", 0.0, 1.0, 0.0, spread=0.0, meaning="dead time of the reading"),
+    "position": Parameter("m", 0.0, 1e2, 0.0, spread=0.0, meaning="of a strain gage along the beam"),
+    "per_volt": Parameter("", -1e6, 1e6, 1.0, spread=0.0, meaning="quantity per volt of a recording in volts"),
+}
+
+
+def sensor_unit(signal: str, key: str) -> str:
+    """Unit of a key in a signal's sensor table."""
+    unit = SIGNALS[signal]
+    if key == "gain":
+        return "V/N/m" if signal.startswith("strain") else ""
+    if key == "per_volt":
+        return f"{unit}/V"
+    return unit if key in ("offset", "noise", "resolution") else SENSOR[key].unit

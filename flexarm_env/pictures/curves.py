@@ -1,0 +1,199 @@
+"""Figures for print: measured against model with residuals, the falling error, and the loop as a whole."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, ParamSpec
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from flexarm_env.errors import InputError
+from flexarm_env.identify.results import Candidate, Comparison, Diagnosis, Replay
+from flexarm_env.pictures import words
+from flexarm_env.pictures.style import AFTER, BEFORE, INK, MEASURED, QUIET, STYLE
+
+P = ParamSpec("P")
+ZOOM = 1.6  # [s], of the loop's first panel
+BARS = 6
+
+
+def _styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
+    """Draw in the project's style and leave matplotlib's settings as they were."""
+
+    @functools.wraps(draw)
+    def styled(*args: P.args, **kwargs: P.kwargs) -> Figure:
+        with matplotlib.rc_context(STYLE):
+            return draw(*args, **kwargs)
+
+    return styled
+
+
+def save(figure: Figure, stem: Path) -> list[Path]:
+    """Write a figure as PNG and SVG; return their paths.
+
+    Raises:
+        InputError: if the place cannot be written.
+    """
+    paths = [stem.with_suffix(".png"), stem.with_suffix(".svg")]
+    try:
+        with matplotlib.rc_context(STYLE):
+            for path, metadata in zip(paths, ({"Software": None}, {"Date": None, "Creator": "FlexArm"}), strict=True):
+                figure.savefig(path, metadata=metadata)
+    except OSError as error:
+        raise InputError(f"cannot write {stem}: {error.strerror}; name a folder that can be written") from None
+    return paths
+
+
+@_styled
+def overlay(before: Comparison, after: Comparison, recording: str, names: tuple[str, str]) -> Figure:
+    """Return measured and modelled signals of a recording, one above the other, each with its residual.
+
+    Args:
+        before: the arm as it came.
+        after: the corrected arm.
+        recording: its name.
+        names: what the two arms are called in the legend.
+    """
+    old, new = _replay(before, recording), _replay(after, recording)
+    signals = words.signals_of(list(old.measured))
+    figure = Figure(figsize=(9.5, 1.0 + 2.45 * len(signals)), layout="constrained")
+    ratios = [part for _ in signals for part in (2.2, 1.0)]
+    axes = figure.subplots(2 * len(signals), 1, sharex=True, squeeze=False, height_ratios=ratios)[:, 0]
+    for i, signal in enumerate(signals):
+        top, bottom = axes[2 * i], axes[2 * i + 1]
+        _curves(top, old, new, signal, names)
+        _residuals(bottom, old, new, signal, before.noise[signal])
+    axes[0].legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3)
+    axes[-1].set_xlabel("time [s]")
+    axes[-1].set_xlim(old.time[0], old.time[-1])
+    figure.suptitle(f"{recording}: replayed in windows of 1 s from estimated states", x=0.01, ha="left", weight="bold")
+    figure.align_ylabels(axes)
+    return figure
+
+
+@_styled
+def waterfall(steps: Sequence[tuple[str, float]], free: Sequence[tuple[str, float]]) -> Figure:
+    """Return the held-out error after each step, in windows and in one free run, beside the noise.
+
+    Args:
+        steps: name and error over noise, in windows of 1 s.
+        free: the same of the free run.
+    """
+    figure = Figure(figsize=(8.0, 3.2), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    _falling(left, steps, "windows of 1 s")
+    _falling(right, free, "one free run")
+    return figure
+
+
+@_styled
+def loop(before: Comparison, after: Comparison, diagnosis: Diagnosis) -> Figure:
+    """Return the loop in one picture: where the model fails, which effect it lacks, how the error falls."""
+    figure = Figure(figsize=(13.0, 3.7), layout="constrained")
+    grid = figure.add_gridspec(2, 3, width_ratios=[1.5, 1.0, 0.85], height_ratios=[2.0, 1.0])
+    top = figure.add_subplot(grid[0, 0])
+    bottom = figure.add_subplot(grid[1, 0], sharex=top)
+    recording, signal, start = _most_telling(before, after)
+    old, new = _replay(before, recording), _replay(after, recording)
+    name = words.LABELS[signal][0]
+    _curves(top, old, new, signal, ("model as given", f"with {' and '.join(diagnosis.effects) or 'new constants'}"))
+    _residuals(bottom, old, new, signal, before.noise[signal])
+    top.set_title(f"1  Where it fails: {name}, recording “{recording}”")
+    top.legend(loc="best", fontsize=8)
+    top.tick_params(labelbottom=False)
+    top.set_xlim(start, start + ZOOM)
+    _fit_height(top, start, start + ZOOM)
+    _fit_height(bottom, start, start + ZOOM)
+    bottom.set_xlabel("time [s]")
+    _ranking(figure.add_subplot(grid[:, 1]), diagnosis.ranking[:BARS])
+    last = figure.add_subplot(grid[:, 2])
+    _falling(last, words.steps_of(diagnosis.error, diagnosis.effects), "")
+    last.set_title("3  The held-out error falls")
+    figure.align_ylabels([top, bottom])
+    return figure
+
+
+def _replay(comparison: Comparison, recording: str) -> Replay:
+    return next(replay for replay in comparison.replays if replay.name == recording)
+
+
+def _curves(axes: Axes, old: Replay, new: Replay, signal: str, names: tuple[str, str]) -> None:
+    label, unit = words.LABELS[signal]
+    axes.plot(old.time, old.measured[signal], color=MEASURED, lw=2.6, label="measured")
+    axes.plot(old.time, old.windows[signal], color=BEFORE, lw=1.1, ls=(0, (4, 1.2)), label=names[0])
+    axes.plot(new.time, new.windows[signal], color=AFTER, lw=1.1, label=names[1])
+    axes.set_ylabel(f"{label}\n[{unit}]")
+
+
+def _residuals(axes: Axes, old: Replay, new: Replay, signal: str, noise: float) -> None:
+    axes.axhspan(-2.0, 2.0, color="#eeeeee", zorder=0)
+    axes.plot(old.time, (old.measured[signal] - old.windows[signal]) / noise, color=BEFORE, lw=0.8)
+    axes.plot(new.time, (new.measured[signal] - new.windows[signal]) / noise, color=AFTER, lw=0.8)
+    axes.set_ylabel("residual\n[noise σ]")
+
+
+def _fit_height(axes: Axes, start: float, stop: float) -> None:
+    """Let the curves between start and stop [s] fill the height."""
+    shown = [np.asarray(line.get_ydata())[_inside(line, start, stop)] for line in axes.get_lines()]
+    low, high = min(y.min() for y in shown), max(y.max() for y in shown)
+    axes.set_ylim(low - 0.06 * (high - low), high + 0.06 * (high - low))
+
+
+def _inside(line: Any, start: float, stop: float) -> Any:
+    x = np.asarray(line.get_xdata())
+    return (x >= start) & (x <= stop)
+
+
+def _most_telling(before: Comparison, after: Comparison) -> tuple[str, str, float]:
+    """Return recording, signal and start [s] of the stretch whose residual falls most, in units of the noise."""
+    best, found = -np.inf, ("", "", 0.0)
+    for old in before.replays:
+        new = _replay(after, old.name)
+        span = max(int(ZOOM / float(np.median(np.diff(old.time)))), 1)
+        for signal in words.signals_of(list(old.measured)):
+            power = [((r.measured[signal] - r.windows[signal]) / before.noise[signal]) ** 2 for r in (old, new)]
+            sums = np.cumsum(np.concatenate([[0.0], power[0] - power[1]]))
+            gains = sums[span:] - sums[:-span]
+            if gains.size and gains.max() > best:
+                best, found = float(gains.max()), (old.name, signal, float(old.time[int(gains.argmax())]))
+    return found
+
+
+def _ranking(axes: Axes, candidates: Sequence[Candidate]) -> None:
+    names = [c.effect.replace("_", " ") for c in candidates]
+    gains = [max(100.0 * c.gain, 0.0) for c in candidates]
+    colours = [AFTER if c.accepted else QUIET for c in candidates]
+    axes.barh(names, gains, color=colours, height=0.62)
+    axes.invert_yaxis()
+    axes.set_xlim(0.0, 100.0)
+    axes.set_xlabel("share of the excess error that it removes [%]")
+    axes.set_title("2  Which effect is missing")
+    axes.grid(axis="y", visible=False)
+    for place, candidate in enumerate(candidates):
+        if candidate.accepted and candidate.estimates:
+            axes.annotate(
+                words.parameters_of(candidate.estimates).replace(" (", "\n("),
+                (1.5, place),
+                va="center",
+                color="white",
+                fontsize=8,
+            )
+
+
+def _falling(axes: Axes, steps: Sequence[tuple[str, float]], title: str) -> None:
+    names = [name.replace("constants ", "constants\n").replace("_", " ") for name, _ in steps]
+    values = [value for _, value in steps]
+    colours = [BEFORE, *[QUIET] * (len(steps) - 2), AFTER] if len(steps) > 1 else [BEFORE]
+    bars = axes.bar(names, values, color=colours, width=0.6)
+    axes.bar_label(bars, [words.number(value) for value in values], padding=2, color=INK)
+    axes.axhline(1.0, color=INK, lw=1.0, ls="--")
+    axes.annotate("noise", (1.01, 1.0), xycoords=("axes fraction", "data"), ha="left", va="center", fontsize=8)
+    axes.set_ylim(0.0, 1.15 * max([*values, 1.2]))
+    axes.set_ylabel("rms error / noise")
+    axes.set_title(title)
+    axes.grid(axis="x", visible=False)

@@ -1,0 +1,149 @@
+"""Numbers and sentences for a person."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+
+from flexarm_env.arm import short_name
+from flexarm_env.identify.results import Addition, Candidate, Comparison, Diagnosis, Estimate
+
+#: What a person calls each signal, and its unit.
+LABELS = {
+    "arm_angle": ("arm angle", "rad"),
+    "motor_speed": ("motor speed", "rad/s"),
+    "strain_mid": ("strain, middle", "V"),
+    "strain_base": ("strain, base", "V"),
+    "tip_deflection": ("tip deflection", "m"),
+}
+NOTHING = "–"
+PARTS = ("moving fast", "moving slowly", "stuck")
+
+
+def number(value: float, digits: int = 3) -> str:
+    """Return a number with that many significant digits, "–" for one that is none."""
+    if not math.isfinite(value):
+        return NOTHING if math.isnan(value) else ("∞" if value > 0 else "−∞")
+    if value == 0.0:
+        return "0"
+    exponent = math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
+    if -4 <= exponent <= 5:
+        return f"{value:.{max(digits - 1 - exponent, 0)}f}"
+    return f"{value:.{digits - 1}e}"
+
+
+def rounded(value: float, low: float, high: float) -> str:
+    """Return a value with the digits that its interval leaves meaning: down to the second of the interval's half."""
+    half = 0.5 * abs(high - low)
+    if not (math.isfinite(half) and math.isfinite(value)) or half == 0.0 or value == 0.0:
+        return number(value, 4)
+    digits = math.floor(math.log10(abs(value))) - math.floor(math.log10(half)) + 2
+    return number(value, min(max(digits, 1), 8))
+
+
+def interval(estimate: Estimate) -> str:
+    """Return low and high end with the digits that they have in common with the value."""
+    ends = (rounded(end, estimate.low, estimate.high) for end in (estimate.low, estimate.high))
+    return " to ".join(ends)
+
+
+def value_of(estimate: Estimate) -> str:
+    """Return "0.0612 rad (0.0583 to 0.0641)"."""
+    unit = f" {plain_unit(estimate.unit)}" if estimate.unit else ""
+    return f"{rounded(estimate.value, estimate.low, estimate.high)}{unit} ({interval(estimate)})"
+
+
+def plain_unit(unit: str) -> str:
+    """Return a pint unit as print has it: N·m² for N*m**2."""
+    text = unit.replace("**2", "²").replace("**3", "³").replace("**4", "⁴").replace("*", "·")
+    return text.replace("Nm", "N·m")
+
+
+def parameters_of(estimates: Iterable[Estimate]) -> str:
+    """Return "gap = 0.0612 rad (0.0583 to 0.0641), …" of an effect's estimates."""
+    return ", ".join(f"{e.path.split('.')[-1]} = {value_of(e)}" for e in estimates)
+
+
+def constant_name(estimate: Estimate) -> str:
+    """Return the short name of a fitted value."""
+    return short_name(estimate.path)
+
+
+def signals_of(rows: Sequence[str]) -> list[str]:
+    """Return the signals among names, in their usual order."""
+    return [name for name in LABELS if name in rows]
+
+
+def steps_of(error: Mapping[str, float], effects: Sequence[str] = ()) -> list[tuple[str, float]]:
+    """Return the error after each step that was taken: as it came, refitted, with each effect."""
+    steps = [("as given", error["nominal"])]
+    if "refitted" in error:
+        steps.append(("constants refitted", error["refitted"]))
+    known = [name for name in effects if name in error]
+    steps += [(f"+ {name}", error[name]) for name in known]
+    if "final" in error and effects:
+        if not known or error["final"] != error[known[-1]]:
+            steps.append((f"+ {effects[-1]}" if not known and len(effects) == 1 else "final", error["final"]))
+    elif "final" in error and error["final"] != error.get("refitted"):
+        steps.append(("final", error["final"]))
+    return steps
+
+
+def arrows(error: Mapping[str, float], effects: Sequence[str] = ()) -> str:
+    """Return "4.10 → 3.70 → 1.02"."""
+    return " → ".join(number(value) for _, value in steps_of(error, effects))
+
+
+def accepted(diagnosis: Diagnosis) -> list[Candidate]:
+    """Return the accepted candidates in the order of the verdict."""
+    found = {c.effect: c for c in diagnosis.ranking}
+    return [found[name] for name in diagnosis.effects if name in found]
+
+
+def verdict(diagnosis: Diagnosis) -> str:
+    """Return what a diagnosis says, in a sentence or a few."""
+    error = diagnosis.error
+    final = number(error["final"])
+    if diagnosis.verdict == "nothing_missing":
+        return f"Nothing is missing: the arm explains these recordings to {final} × the noise."
+    if diagnosis.verdict == "parameters":
+        return f"No effect is missing. The constants were off: refitted, the error falls {arrows(error)} × the noise."
+    if diagnosis.verdict == "unknown":
+        return (
+            f"Something is missing that nothing in the catalogue explains: the error stays at {final} × the noise, "
+            f"from {number(error['nominal'])} as given."
+        )
+    if diagnosis.verdict == "insufficient_data":
+        return f"These recordings cannot tell: the error is {final} × the noise."
+    return " ".join([_missing(diagnosis), _doubt(diagnosis)]).strip()
+
+
+def _missing(diagnosis: Diagnosis) -> str:
+    named = {c.effect: parameters_of(c.estimates) for c in accepted(diagnosis)}
+    parts = [f"{name}, {named[name]}" if named.get(name) else name for name in diagnosis.effects]
+    falls = arrows(diagnosis.error, diagnosis.effects)
+    return f"Missing: {'; '.join(parts)}. With it the held-out error falls {falls} × the noise."
+
+
+def _doubt(diagnosis: Diagnosis) -> str:
+    rivals = [(names[0], names[1:]) for names in diagnosis.equivalent if len(names) > 1]
+    return " ".join(f"These data cannot tell {name} from {' or '.join(others)}." for name, others in rivals)
+
+
+def addition(result: Addition) -> str:
+    """Return what an added effect did, in a sentence."""
+    own = [e for e in result.estimates if e.path.startswith(f"effects.{result.effect}.")]
+    falls = result.error["final"] < result.error["refitted"]
+    change = arrows(result.error, [result.effect])
+    return (
+        f"{result.effect}: {parameters_of(own) or 'added'}. "
+        f"The held-out error {'falls' if falls else 'does not fall'}: {change} × the noise."
+    )
+
+
+def comparison(result: Comparison) -> str:
+    """Return how far an arm is from recordings, in a sentence."""
+    return (
+        f"Arm '{result.arm.name}' misses by {number(result.error)} × the noise in windows of 1 s, "
+        f"by {number(result.free_run)} × in one free run; 1 is perfect."
+    )

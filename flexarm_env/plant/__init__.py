@@ -1,0 +1,1 @@
+"""The plant: finite elements, exact linear propagation, stick-slip, in one numba kernel."""

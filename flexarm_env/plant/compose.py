@@ -1,0 +1,192 @@
+"""One compiled kernel from the plant's source and the laws of a catalogue of effects.
+
+The text of the kernel and of every law goes into one generated module, named by the hash of that text: numba caches it
+across processes, and a change in any of the sources gives another module, never yesterday's physics.
+
+An index in a kernel counts from the front. numba would give a negative one Python's meaning, with a test and a selection
+at each access (30 % of the time of a step); the generated module makes every computed index unsigned, which it takes as
+it is.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import importlib.util
+import inspect
+import os
+import sys
+import tempfile
+import textwrap
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numba
+
+#: Ports that are laws in the kernel: the arguments that each may name, and what its switch returns by default.
+PORTS: dict[str, tuple[tuple[str, ...], str]] = {
+    "friction": (("direction", "speed", "angle", "time", "at_rest"), "0.0"),
+    "torque": (("angle", "speed", "time"), "0.0"),
+    "drag": (("velocity",), "0.0"),
+    "drive": (("command", "previous", "interval"), "command"),
+}
+
+#: What the kernels' annotations stand for. Without a signature numba compiles a kernel for every literal it is given.
+TYPES = {
+    "float": "float64",
+    "int": "int64",
+    "bool": "boolean",
+    "Numbers": "float64[::1]",
+    "Places": "int64[::1]",
+    "Samples": "float64[:, ::1]",
+    "Gains": "float64[:, :, ::1]",
+}
+OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
+NO_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+#: Kernels that Python calls. The others get no wrapper to be called by: half the work of compiling a small one.
+ENTRANCES = ("scratch_size", "prepare", "respond", "place_at", "to_physical", "measure", "let_through", "control_step")
+ENTRANCES += ("replay",)
+
+#: The kernel, each file after those that it calls.
+FILES = ("propagate.py", "stick_slip.py", "varying.py", "glide.py", "events.py", "kernel.py")
+
+Law = tuple[str, str, Callable[..., float], tuple[str, ...]]  # port, effect, function, names of its parameters
+
+
+def cache_folder() -> Path:
+    """Folder of the compiled kernels: $FLEXARM_CACHE, or flexarm in the user's cache."""
+    base = os.environ.get("FLEXARM_CACHE")
+    if base:
+        return Path(base)
+    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "flexarm"
+
+
+def _law_source(name: str, function: Callable[..., float]) -> str:
+    source = textwrap.dedent(inspect.getsource(function))
+    body = source[source.index("def ") :]
+    options = ", ".join(f"{name}={value!r}" for name, value in (OPTIONS | NO_WRAPPERS).items())
+    return f"@njit({options})\n" + body.replace(f"def {function.__name__}(", f"def {name}(", 1)
+
+
+def _switch(port: str, laws: Sequence[Law]) -> str:
+    given, default = PORTS[port]
+    typed = ", ".join(f"{name}: {'bool' if name == 'at_rest' else 'float'}" for name in given)
+    lines = [f"@njit\ndef {port}_law(kind: int, {typed}, d: Numbers, k: int):"]
+    sources = []
+    for kind, (law_port, effect, function, parameters) in enumerate(laws):
+        if law_port != port:
+            continue
+        name = f"{port}_{effect}"
+        sources.append(_law_source(name, function))
+        wanted = inspect.signature(function).parameters
+        passed = [a if a in given else f"d[k + {parameters.index(a)}]" for a in wanted]
+        lines += [f"    if kind == {kind}:", f"        return {name}({', '.join(passed)})"]
+    lines.append(f"    return {default}")
+    return "\n\n".join([*sources, "\n".join(lines)])
+
+
+def _plain(path: Path) -> str:
+    """Source of a kernel file without its imports, which the generated module brings itself."""
+    lines, skipping = [], False
+    for line in path.read_text(encoding="utf-8").splitlines():
+        starts = line.startswith(("from ", "import "))
+        if starts:
+            skipping = line.rstrip().endswith("(")
+        elif skipping:
+            skipping = not line.startswith(")")
+        elif "= NDArray[" not in line:
+            lines.append(line)
+    return "\n".join(lines)
+
+
+class _Compiled(ast.NodeTransformer):
+    """Turn the kernels' annotations into signatures, so that each is compiled once, and make their indices unsigned."""
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
+        """Replace the bare decorator of a kernel."""
+        self.generic_visit(node)
+        decorator = node.decorator_list[0]
+        options = list(decorator.keywords) if isinstance(decorator, ast.Call) else []
+        given = [option.arg for option in options]
+        if "cache" in given:  # a law, which takes its types from the kernel that calls it
+            return node
+        signature = [_signature(node)]  # which takes the annotations off, too
+        every = OPTIONS if node.name in ENTRANCES else OPTIONS | NO_WRAPPERS
+        options += [ast.keyword(name, ast.Constant(value)) for name, value in every.items()]
+        signatures = [] if "inline" in given else signature
+        node.decorator_list = [ast.Call(ast.Name("njit", ast.Load()), signatures, options)]
+        return node
+
+    def visit_Subscript(self, node: ast.Subscript) -> ast.Subscript:
+        """Make an index unsigned if it is computed."""
+        self.generic_visit(node)
+        if isinstance(node.slice, ast.Tuple):
+            node.slice.elts = [_unsigned(index) for index in node.slice.elts]
+        else:
+            node.slice = _unsigned(node.slice)
+        return node
+
+
+def _signature(node: ast.FunctionDef) -> ast.expr:
+    names = [a.annotation.id for a in node.args.args if isinstance(a.annotation, ast.Name)]
+    for argument in node.args.args:
+        argument.annotation = None
+    node.returns = None
+    return ast.parse(f"({', '.join(TYPES[name] for name in names)},)", mode="eval").body
+
+
+def _unsigned(index: ast.expr) -> ast.expr:
+    fixed = isinstance(index, ast.Constant) or (isinstance(index, ast.Name) and index.id.isupper())
+    return index if fixed else ast.Call(ast.Name("uint64", ast.Load()), [index], [])
+
+
+def source_of(laws: Sequence[Law]) -> str:
+    """Text of the kernel with these laws in its switches, before it is given signatures and unsigned indices."""
+    here = Path(__file__).parent
+    imports = ["import math", "import numpy as np", "from numba import boolean, float64, int64, njit, uint64"]
+    parts = [*imports, _plain(here / "layout.py")]
+    parts += [_switch(port, laws) for port in PORTS]
+    parts += [_plain(here / file) for file in FILES]
+    text = "\n\n".join(parts) + "\n"
+    return text
+
+
+def compose(laws: Sequence[Law]) -> ModuleType:
+    """Return the compiled kernel for a catalogue's laws, from the cache where it has been compiled before.
+
+    Args:
+        laws: all laws of the catalogue; an arm then names by `kind`, its index here, those that are active.
+    """
+    return _compose(tuple(laws))
+
+
+@lru_cache(maxsize=8)
+def _compose(laws: tuple[Law, ...]) -> ModuleType:
+    return _module(source_of(laws))
+
+
+@lru_cache(maxsize=8)
+def _module(text: str) -> ModuleType:
+    own = Path(__file__).read_text(encoding="utf-8")
+    stamp = hashlib.sha256(f"{numba.__version__}\n{own}\n{text}".encode()).hexdigest()[:16]
+    name = f"flexarm_kernel_{stamp}"
+    path = cache_folder() / f"{name}.py"
+    if not path.exists():
+        _write_whole(path, ast.unparse(_Compiled().visit(ast.parse(text))))
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None and spec.loader is not None
+    module: Any = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+    return module  # type: ignore[no-any-return]
+
+
+def _write_whole(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.NamedTemporaryFile("w", dir=path.parent, suffix=".tmp", delete=False, encoding="utf-8") as file:
+        file.write(text)
+    os.replace(file.name, path)

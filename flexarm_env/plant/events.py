@@ -1,0 +1,134 @@
+"""The next event of a step: a body that stops, a held one that breaks away, gears that part or meet."""
+
+from __future__ import annotations
+
+from numba import njit
+
+from flexarm_env.plant.layout import (
+    BLOCKS,
+    BODIES,
+    C0,
+    C1,
+    GAP,
+    GEAR_SIDE,
+    HEADER,
+    HELD_HUB,
+    HELD_MOTOR,
+    HOLD,
+    HOLD_WEIGHT,
+    HUB_DIRECTION,
+    SPEED,
+    SPEED_WEIGHT,
+    VARYING,
+    WINDUP,
+    WINDUP_WEIGHT,
+    Numbers,
+    Places,
+)
+from flexarm_env.plant.propagate import amplitudes, curvature_bound, dot, first_crossing, rate_of, value_at
+from flexarm_env.plant.stick_slip import applied_offset, is_stuck, record, rubs, static_budget
+
+GEAR_OPEN = 4
+# events: none, a body that stops, a held body that breaks away, gears that part or meet
+NOTHING, STOP, BREAK, GEARS = 0, 1, 2, 3
+
+
+@njit
+def look(
+    d: Numbers, n: Places, mode: int, row: int, weight: int, sign: float, o0: float, o1: float,
+    o2: float, s: Numbers, w: Numbers, trial: int, force: int, size: int, start: float, end: float,
+    best: float,
+) -> float:  # fmt: skip
+    """Return when sign · (row · z) + o₀ + o₁ t + o₂ t²/2 falls to zero within (start, min(end, best)], or `best`.
+
+    z is the state now; the one at `end` stands in w at `trial`.
+    """
+    here = record(n, mode)
+    c0, c1, blocks = here + n[C0], here + n[C1], n[BLOCKS]
+    bound = curvature_bound(d, row, weight, blocks, w, size, force, n[VARYING], end) + abs(o2)
+    fourth = dot(d, weight, w, size + blocks, blocks)
+    value = sign * dot(d, row, w, trial, 2 * blocks) + o0 + end * (o1 + 0.5 * end * o2)
+    slope, before = 0.0, 0.0
+    if start > 0.0:
+        before, slope = value_at(d, row, sign, o0, o1, o2, c0, c1, blocks, s, w, force, n[VARYING], start)
+        if before <= 0.0:
+            return min(best, start)
+    else:
+        before = sign * dot(d, row, s, HEADER, 2 * blocks) + o0
+    if end <= start:
+        return best
+    if before > 0.125 * end * end * bound and value > 0.125 * end * end * bound:
+        return best
+    if start == 0.0:
+        slope = sign * rate_of(d, row, c0, c1, blocks, s, HEADER, w, force, 0.0) + o1
+    rate = sign * rate_of(d, row, c0, c1, blocks, w, trial, w, force, end) + o1 + end * o2
+    root = first_crossing(
+        d, row, sign, o0, o1, o2, c0, c1, blocks, s, w, force, n[VARYING], start, end,
+        before, slope, value, rate, bound, fourth,
+    )  # fmt: skip
+    return root if 0.0 <= root < best else best
+
+
+@njit
+def look_at_gears(
+    d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, trial: int, force: int, size: int,
+    start: float, end: float, side: float, best: float,
+) -> float:  # fmt: skip
+    """Return when gears that touch on `side` part, or open gears meet there; else `best`."""
+    closed = s[GEAR_SIDE] == side
+    if not closed and not mode & GEAR_OPEN:
+        return best
+    held = 0.0
+    if is_stuck(mode, 1):
+        held += s[HELD_MOTOR]
+    if is_stuck(mode, 0):
+        held -= s[HELD_HUB]
+    sign = side if closed else -side
+    offset = sign * held + (-0.5 if closed else 0.5) * d[GAP]
+    here = record(n, mode)
+    return look(
+        d, n, mode, here + n[WINDUP], here + n[WINDUP_WEIGHT], sign, offset, 0.0, 0.0, s, w, trial, force, size, start, end, best
+    )
+
+
+@njit
+def next_event(
+    d: Numbers, n: Places, s: Numbers, mode: int, command: float, w: Numbers, trial: int, force: int,
+    coefficients: int, size: int, start: float, end: float,
+) -> tuple[float, int, float]:  # fmt: skip
+    """Return (time, kind, body or side) of the first event within (start, end]; kind NOTHING if there is none."""
+    here = record(n, mode)
+    blocks = n[BLOCKS]
+    amplitudes(d, here + n[C0], here + n[C1], blocks, s, w, force, n[VARYING], end, size)
+    best, kind, which = 2.0 * end + 1.0, NOTHING, 0.0
+    for body in range(n[BODIES]):
+        if not rubs(d, n, body):
+            continue
+        if not is_stuck(mode, body):
+            row, weight = here + n[SPEED] + body * 2 * blocks, here + n[SPEED_WEIGHT] + body * blocks
+            direction = s[HUB_DIRECTION + body]
+            when = look(d, n, mode, row, weight, direction, 0.0, 0.0, 0.0, s, w, trial, force, size, start, end, best)
+            if when < best:
+                best, kind, which = when, STOP, float(body)
+            continue
+        row, weight = here + n[HOLD] + body * 2 * blocks, here + n[HOLD_WEIGHT] + body * blocks
+        o0 = applied_offset(d, n, s, mode, body, command, w, coefficients, 0)
+        o1 = applied_offset(d, n, s, mode, body, command, w, coefficients, 1) if n[VARYING] else 0.0
+        o2 = applied_offset(d, n, s, mode, body, command, w, coefficients, 2) if n[VARYING] else 0.0
+        for side in range(2):
+            push = 1.0 - 2.0 * side
+            budget = static_budget(d, n, s, mode, body, push)
+            if start == 0.0 and push * (o0 + dot(d, row, s, HEADER, 2 * blocks)) > budget:
+                return 0.0, BREAK, float(body)
+            when = look(
+                d, n, mode, row, weight, -push, budget - push * o0, -push * o1, -push * o2,
+                s, w, trial, force, size, start, end, best,
+            )  # fmt: skip
+            if when < best:
+                best, kind, which = when, BREAK, float(body)
+    for side in range(2 if d[GAP] > 0.0 else 0):
+        gear_side = 1.0 - 2.0 * side
+        when = look_at_gears(d, n, s, mode, w, trial, force, size, start, end, gear_side, best)
+        if when < best:
+            best, kind, which = when, GEARS, gear_side
+    return best, kind, which

@@ -1,0 +1,294 @@
+"""One control step of the arm: exact motion between events, the events, and the forces that vary with the motion."""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from flexarm_env.plant.events import GEAR_OPEN, GEARS, NOTHING, next_event
+from flexarm_env.plant.glide import glide
+from flexarm_env.plant.laws import drive_law
+from flexarm_env.plant.layout import (
+    BLOCKS,
+    BODIES,
+    C0,
+    C1,
+    COMMAND,
+    COORDINATES,
+    DRIVE_LAWS,
+    DRIVERS,
+    EARLY_LENGTH,
+    EARLY_SUBSTEPS,
+    GAP,
+    GEAR_SIDE,
+    GLIDES,
+    HEADER,
+    HELD_HUB,
+    HELD_MOTOR,
+    HUB_DIRECTION,
+    INTERVAL,
+    LATE_LENGTH,
+    LATE_SUBSTEPS,
+    MODE,
+    OUTPUT,
+    OUTPUT_DRIVERS,
+    POINTS,
+    REACH,
+    RESPONSES,
+    SIGNALS,
+    SPEED,
+    STATES,
+    TIME,
+    VARYING,
+    W_HELD_HUB,
+    W_HELD_MOTOR,
+    W_ONE,
+    Gains,
+    Numbers,
+    Places,
+    Samples,
+)
+from flexarm_env.plant.propagate import (
+    RESPONSE,
+    advance,
+    dot,
+    respond,
+)
+from flexarm_env.plant.stick_slip import (
+    enter,
+    evaluate_forces,
+    is_stuck,
+    record,
+    settle,
+    to_physical,
+)
+from flexarm_env.plant.varying import add_forces, collocate, constant_forcing, reach
+
+#: After an event the next is looked for this much later [s], twice as much after each further one in the same substep,
+#: so that events that crowd (white noise at zero speed) cannot hold time still.
+FIRST_BLIND_TIME = 1e-11
+UNTABULATED = -1
+#: Sum of block coordinates beyond which a replay gives up and reports NaN.
+RUN_AWAY = 1e9
+
+
+@njit
+def scratch_size(n: Places) -> int:
+    """How many numbers of scratch the kernel needs."""
+    count = n[BODIES] + n[POINTS]
+    return 26 * n[BLOCKS] + n[STATES] + (14 + 12 * count) * count + 8
+
+
+@njit
+def happen(
+    d: Numbers, n: Places, s: Numbers, kind: int, which: float, command: float, w: Numbers,
+    physical: int, coefficients: int,
+) -> None:  # fmt: skip
+    """Let an event take place."""
+    mode = int(s[MODE])
+    to_physical(d, n, s, mode, w, physical)
+    if kind != GEARS:
+        settle(d, n, s, int(which), command, w, physical, coefficients)
+    elif mode & GEAR_OPEN:
+        s[GEAR_SIDE] = which
+        enter(d, n, s, mode & ~GEAR_OPEN, w, physical)
+    else:
+        s[GEAR_SIDE] = 0.0
+        enter(d, n, s, mode | GEAR_OPEN, w, physical)
+
+
+@njit
+def face_motion(d: Numbers, n: Places, s: Numbers, mode: int) -> None:
+    """Let friction oppose the motion of a state that was set or corrected from outside."""
+    size = 2 * n[BLOCKS]
+    for body in range(n[BODIES]):
+        if not is_stuck(mode, body):
+            speed = dot(d, record(n, mode) + n[SPEED] + body * size, s, HEADER, size)
+            if speed * s[HUB_DIRECTION + body] < 0.0:
+                s[HUB_DIRECTION + body] *= -1.0
+
+
+@njit
+def substep(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int, w: Numbers) -> None:
+    """Move the arm on by t [s] under a held command; `slot` names the tabulated responses for exactly t."""
+    blocks = n[BLOCKS]
+    size, count = 2 * n[BLOCKS], n[BODIES] + n[POINTS]
+    trial, force = 0, size
+    coefficients = force + 3 * size
+    nodes = coefficients + 3 * count
+    motion = nodes + 5 * count
+    sizes = motion + 6 * count
+    own = sizes + 2 * blocks
+    own_reach = own + 2 * RESPONSE * blocks
+    physical = own_reach + (12 * count * count if n[VARYING] else 0)
+    shift = (2 * n[BODIES] + n[POINTS]) * 3 * count
+    left, blind = t, 0.0
+    face_motion(d, n, s, int(s[MODE]))
+    while left > 0.0:
+        mode = int(s[MODE])
+        here = record(n, mode)
+        c0, c1 = here + n[C0], here + n[C1]
+        known = slot >= 0 and blind == 0.0
+        table = d if known else w
+        middle = here + n[RESPONSES] + slot * 2 * RESPONSE * blocks if known else own
+        end = middle + RESPONSE * blocks
+        if not known:
+            respond(d, c0, c1, blocks, left, w, end)
+        if n[VARYING]:
+            shifts = here + n[REACH] + slot * 2 * shift if known else own_reach
+            if not known:
+                respond(d, c0, c1, blocks, 0.5 * left, w, middle)
+                reach(d, n, mode, w, middle, w, own_reach)
+                reach(d, n, mode, w, end, w, own_reach + shift)
+            collocate(
+                d, n, s, mode, command, left, table, middle, table, shifts, w, trial, nodes, motion, force, coefficients
+            )
+        else:
+            constant_forcing(d, n, s, command, mode, w, force)
+            evaluate_forces(d, n, s, mode, w, coefficients)
+            add_forces(d, n, mode, w, coefficients, force)
+        advance(d, c0, c1, blocks, table, end, s, w, force, n[VARYING], trial)
+        when, kind, which = next_event(
+            d, n, s, mode, command, w, trial, force, coefficients, sizes, min(blind, left), left
+        )
+        if kind == NOTHING:
+            when = left
+        elif when > 0.0:
+            respond(d, c0, c1, blocks, when, w, end if not known else own)
+            advance(d, c0, c1, blocks, w, end if not known else own, s, w, force, n[VARYING], trial)
+        if when > 0.0:
+            for i in range(size):
+                s[HEADER + i] = w[trial + i]
+            s[TIME] += when
+        if kind == NOTHING:
+            return
+        happen(d, n, s, kind, which, command, w, physical, coefficients)
+        left -= when
+        blind = max(2.0 * blind, FIRST_BLIND_TIME)
+
+
+@njit
+def let_through(d: Numbers, n: Places, s: Numbers, command: float) -> float:
+    """Return what the drive makes of a command, and remember it."""
+    place = n[DRIVE_LAWS]
+    for j in range(n[place]):
+        command = drive_law(n[place + 1 + 2 * j], command, s[COMMAND], d[INTERVAL], d, n[place + 2 + 2 * j])
+    s[COMMAND] = command
+    return command
+
+
+@njit
+def control_step(d: Numbers, n: Places, s: Numbers, before: float, command: float, w: Numbers) -> None:
+    """Move the arm on by one sample: the last command acts until the delay is over, then the new one."""
+    for _ in range(n[EARLY_SUBSTEPS]):
+        if not n[GLIDES] or not glide(d, n, s, before, d[EARLY_LENGTH], 0, w):
+            substep(d, n, s, before, d[EARLY_LENGTH], 0, w)
+    for _ in range(n[LATE_SUBSTEPS]):
+        if not n[GLIDES] or not glide(d, n, s, command, d[LATE_LENGTH], 1, w):
+            substep(d, n, s, command, d[LATE_LENGTH], 1, w)
+
+
+@njit(inline="always")
+def uneven_step(
+    d: Numbers, n: Places, s: Numbers, before: float, command: float, interval: float, w: Numbers,
+) -> None:  # fmt: skip
+    """Like control_step, over an interval that is not the tabulated one."""
+    early = min(d[EARLY_LENGTH] * n[EARLY_SUBSTEPS], interval)
+    late = interval - early
+    if early > 0.0:
+        substep(d, n, s, before, early, UNTABULATED, w)
+    count = max(int(math.ceil(late / d[LATE_LENGTH] - 1e-9)), 1) if late > 0.0 else 0
+    for _ in range(count):
+        substep(d, n, s, command, late / count, UNTABULATED, w)
+
+
+@njit
+def measure(d: Numbers, n: Places, s: Numbers, out: Numbers, at: int) -> None:
+    """Write the readings, without noise, to out from `at` on."""
+    here = record(n, int(s[MODE]))
+    size = 2 * n[BLOCKS]
+    for i in range(n[SIGNALS]):
+        row = here + n[OUTPUT_DRIVERS] + i * n[DRIVERS]
+        total = dot(d, here + n[OUTPUT] + i * size, s, HEADER, size) + d[row + W_ONE]
+        out[at + i] = total + d[row + W_HELD_HUB] * s[HELD_HUB] + d[row + W_HELD_MOTOR] * s[HELD_MOTOR]
+
+
+@njit
+def place_at(d: Numbers, n: Places, s: Numbers, physical: Numbers, command: float, w: Numbers) -> None:
+    """Put the arm into a physical state (states,): a body at rest sticks if friction holds it."""
+    mode = 0
+    if d[GAP] > 0.0:
+        windup = physical[1] - physical[0]
+        s[GEAR_SIDE] = 0.0
+        if windup >= 0.5 * d[GAP]:
+            s[GEAR_SIDE] = 1.0
+        elif windup <= -0.5 * d[GAP]:
+            s[GEAR_SIDE] = -1.0
+        else:
+            mode = GEAR_OPEN
+    for i in range(n[STATES]):
+        w[i] = physical[i]
+    for body in range(n[BODIES]):
+        speed = physical[n[COORDINATES] + body]
+        s[HUB_DIRECTION + body] = 1.0 if speed >= 0.0 else -1.0
+        if speed == 0.0:
+            mode |= 1 << body
+    enter(d, n, s, mode, w, 0)
+    for body in range(n[BODIES]):
+        if is_stuck(int(s[MODE]), body):
+            settle(d, n, s, body, command, w, 0, n[STATES])
+
+
+@njit
+def feed_back(
+    d: Numbers, n: Places, s: Numbers, gains: Gains, measured: Samples, readings: Numbers, k: int,
+) -> None:  # fmt: skip
+    """Correct the state by gains (modes, 2 blocks + bodies, signals) times the error of each reading."""
+    mode = int(s[MODE])
+    size = 2 * n[BLOCKS]
+    for j in range(n[SIGNALS]):
+        error = measured[k, j] - readings[k * n[SIGNALS] + j]
+        for i in range(size):
+            s[HEADER + i] += gains[mode, i, j] * error
+        for body in range(n[BODIES]):
+            if is_stuck(mode, body):
+                s[HELD_HUB + body] += gains[mode, size + body, j] * error
+
+
+@njit
+def is_lost(n: Places, s: Numbers) -> bool:
+    """Whether the state has run away: a feedback that does not suit the arm, or values beyond reason."""
+    total = 0.0
+    for i in range(2 * n[BLOCKS]):
+        total += abs(s[HEADER + i])
+    return not total < RUN_AWAY
+
+
+@njit
+def replay(
+    d: Numbers, n: Places, s: Numbers, commands: Numbers, intervals: Numbers, readings: Numbers,
+    gains: Gains, measured: Samples, w: Numbers,
+) -> None:  # fmt: skip
+    """Play commands (samples,) and fill readings (samples · signals,), each taken before its command acts.
+
+    `intervals` (samples,) holds the sampling times [s] where they are uneven, else nothing. With gains, each reading's
+    error against `measured` (samples, signals) is fed back (innovations form); without, both are empty.
+    """
+    count = commands.shape[0]
+    for k in range(count):
+        measure(d, n, s, readings, k * n[SIGNALS])
+        if is_lost(n, s):
+            for i in range(k * n[SIGNALS], count * n[SIGNALS]):
+                readings[i] = math.nan
+            return
+        if gains.shape[0]:
+            feed_back(d, n, s, gains, measured, readings, k)
+        if k + 1 == count:
+            return
+        before = s[COMMAND]
+        command = let_through(d, n, s, commands[k])
+        if intervals.shape[0]:
+            uneven_step(d, n, s, before, command, intervals[k], w)
+        else:
+            control_step(d, n, s, before, command, w)

@@ -1,0 +1,32 @@
+"""The laws of an arm without effects: what the kernel calls where no effect is active.
+
+`compose` puts a switch over the effects' own functions in the place of these. Parameters of effect `kind` start at d[k].
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+
+@njit
+def friction_law(kind, direction, speed, angle, time, at_rest, d, k):
+    """Budget of dry friction [Nm] that effect `kind` adds."""
+    return 0.0
+
+
+@njit
+def torque_law(kind, angle, speed, time, d, k):
+    """Torque on the hub [Nm] from effect `kind`."""
+    return 0.0
+
+
+@njit
+def drag_law(kind, velocity, d, k):
+    """Force per length on the beam [N/m] from effect `kind`."""
+    return 0.0
+
+
+@njit
+def drive_law(kind, command, previous, interval, d, k):
+    """Command that effect `kind` lets through, from the one given and the one before."""
+    return command

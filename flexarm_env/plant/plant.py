@@ -1,0 +1,134 @@
+"""The plant: an arm's structure and active laws, compiled, with its state."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from flexarm_env.plant import layout as at
+from flexarm_env.plant.beam import Matrix
+from flexarm_env.plant.compose import Law, compose
+from flexarm_env.plant.structure import Structure, assemble
+from flexarm_env.plant.tables import RESPONSE, ActiveLaw, pack
+
+NO_GAINS = np.zeros((0, 0, 0))
+NO_INTERVALS = np.zeros(0)
+NOT_MEASURED = np.zeros((0, 0))
+
+
+class Plant:
+    """A compiled arm with one state: place it, replay commands, read its physical state.
+
+    Args:
+        structure: the linear part.
+        active: the laws of friction, torque, drag and drive that act.
+        catalogue: all laws of the catalogue, which the compiled kernel knows.
+        interval: sampling time [s].
+    """
+
+    def __init__(
+        self, structure: Structure, active: Sequence[ActiveLaw], catalogue: Sequence[Law], interval: float
+    ) -> None:
+        self.kernel: Any = compose(catalogue)
+        model = assemble(structure)
+        self.model = model
+        self.signals = model.signals
+        self.constants, self.layout, self.delay_samples = pack(structure, model, active, interval)
+        n, d = self.layout, self.constants
+        self.blocks, self.states = int(n[at.BLOCKS]), int(n[at.STATES])
+        self.bodies = int(n[at.BODIES])
+        self.modes = int((n[at.PARAMETERS] - n[at.MODES]) // n[at.STRIDE])
+        self.kernel.prepare(d, n)
+        self.scratch = np.zeros(self.kernel.scratch_size(n))
+        self.state = np.zeros(at.HEADER + 2 * self.blocks)
+
+    def mode_matrix(self, mode: int, quantity: int, rows: int) -> Matrix:
+        """A view of one of the layout's row matrices (rows, 2 blocks) of a mode."""
+        start = self.layout[at.MODES] + mode * self.layout[at.STRIDE] + self.layout[quantity]
+        return self.constants[start : start + rows * 2 * self.blocks].reshape(rows, 2 * self.blocks)
+
+    def to_modal(self, mode: int) -> Matrix:
+        """Return the matrix (2 blocks, states) that gives a mode's block coordinates from the physical state."""
+        start = self.layout[at.MODES] + mode * self.layout[at.STRIDE] + self.layout[at.MODAL]
+        return self.constants[start : start + 2 * self.blocks * self.states].reshape(2 * self.blocks, self.states)
+
+    def transition(self, mode: int, interval: float) -> tuple[Matrix, Matrix]:
+        """Return what an interval makes of the state in a mode.
+
+        Returns:
+            (states, states), for the physical state; (states,), what 1 Nm on the hub adds.
+        """
+        start = self.layout[at.MODES] + mode * self.layout[at.STRIDE]
+        table = np.zeros((self.blocks, RESPONSE))
+        c0_at, c1_at = (int(start + self.layout[key]) for key in (at.C0, at.C1))
+        self.kernel.respond(self.constants, c0_at, c1_at, self.blocks, interval, table.reshape(-1), 0)
+        c0, c1 = (self.constants[place : place + self.blocks] for place in (c0_at, c1_at))
+        c, s, r0 = table[:, 0], table[:, 1], table[:, 2]
+        step = np.zeros((2 * self.blocks, 2 * self.blocks))
+        answer = np.zeros_like(step)
+        p = np.arange(0, 2 * self.blocks, 2)
+        step[p, p], step[p, p + 1], step[p + 1, p], step[p + 1, p + 1] = c, s, -c0 * s, c - c1 * s
+        answer[p, p], answer[p, p + 1], answer[p + 1, p], answer[p + 1, p + 1] = s + c1 * r0, r0, -c0 * r0, s
+        to_physical = self.mode_matrix(mode, at.PHYSICAL, self.states)
+        hub = self.mode_matrix(mode, at.FORCE_COLUMNS, 1)[0]
+        return to_physical @ step @ self.to_modal(mode), to_physical @ answer @ hub
+
+    def place(self, physical: Matrix | None = None, command: float = 0.0) -> None:
+        """Put the arm at [q, q̇, extra] (states,), at rest at angle 0 by default, under a command [A or V]."""
+        start = np.zeros(self.states) if physical is None else np.ascontiguousarray(physical, dtype=float)
+        self.state[:] = 0.0
+        self.state[at.COMMAND] = command
+        self.kernel.place_at(self.constants, self.layout, self.state, start, command, self.scratch)
+
+    def physical(self) -> Matrix:
+        """Return [q, q̇, extra] (states,): angles [rad], deflections [m], their rates, lagged current and filters."""
+        out = np.zeros(self.states)
+        self.kernel.to_physical(self.constants, self.layout, self.state, int(self.state[at.MODE]), out, 0)
+        return out
+
+    def replay(
+        self,
+        commands: Matrix,
+        intervals: Matrix = NO_INTERVALS,
+        gains: Matrix = NO_GAINS,
+        measured: Matrix = NOT_MEASURED,
+    ) -> Matrix:
+        """Play commands (samples,) from the present state; return readings (samples, signals) without noise.
+
+        Args:
+            commands: held from each sample to the next [A or V].
+            intervals: times from sample to sample [s] where sampling is uneven.
+            gains: (modes, 2 blocks + bodies, signals), feed the error against `measured` back.
+            measured: (samples, signals), needed with gains.
+        """
+        return self.play(self.delayed(commands), intervals, gains, measured)
+
+    def play(self, commands: Matrix, intervals: Matrix, gains: Matrix, measured: Matrix) -> Matrix:
+        """Like replay, for commands that have been shifted by the whole samples of the delay."""
+        readings = np.empty((len(commands), len(self.signals)))
+        self.kernel.replay(
+            self.constants,
+            self.layout,
+            self.state,
+            commands,
+            np.ascontiguousarray(intervals, dtype=float),
+            readings.reshape(-1),
+            np.ascontiguousarray(gains, dtype=float),
+            np.ascontiguousarray(measured, dtype=float),
+            self.scratch,
+        )
+        return readings
+
+    def delayed(self, commands: Matrix) -> Matrix:
+        """Return commands (samples,) shifted by the whole samples of the delay; the rest of it is in the plant."""
+        shift = self.delay_samples
+        if shift == 0:
+            return commands
+        moved = np.roll(commands, shift)
+        if shift > 0:
+            moved[:shift] = self.state[at.COMMAND]
+        else:
+            moved[shift:] = commands[-1]
+        return moved

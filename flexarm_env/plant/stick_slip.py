@@ -1,0 +1,203 @@
+"""Friction decides here, once: which torque it gives while a body turns, and whether a body at rest stays held."""
+
+from __future__ import annotations
+
+from numba import njit
+
+from flexarm_env.plant.laws import drag_law, friction_law, torque_law
+from flexarm_env.plant.layout import (
+    ANGLE,
+    BLOCKS,
+    BODIES,
+    COORDINATES,
+    DRAG_LAWS,
+    DRAG_VELOCITY,
+    DRIVERS,
+    FRICTION_LAWS,
+    GEAR_SIDE,
+    HEADER,
+    HELD_HUB,
+    HELD_MOTOR,
+    HOLD,
+    HOLD_DRIVERS,
+    HOLD_FORCES,
+    HOLDS_ANGLE,
+    HUB_DIRECTION,
+    HUB_SHARE,
+    MODAL,
+    MODE,
+    MODES,
+    PHYSICAL,
+    POINTS,
+    SPEED,
+    STATES,
+    STRIDE,
+    TIME,
+    TORQUE_LAWS,
+    W_COMMAND,
+    W_HELD_HUB,
+    W_HELD_MOTOR,
+    W_ONE,
+    W_SIDE,
+    Numbers,
+    Places,
+)
+from flexarm_env.plant.propagate import dot
+
+
+@njit
+def record(n: Places, mode: int) -> int:
+    """Where the mode's record starts in d."""
+    return n[MODES] + mode * n[STRIDE]
+
+
+@njit
+def is_stuck(mode: int, body: int) -> bool:
+    """Whether the mode holds the body (0 hub, 1 motor)."""
+    return (mode >> body) & 1 == 1
+
+
+@njit
+def friction_budget(
+    d: Numbers, n: Places, body: int, direction: float, speed: float, angle: float, time: float,
+    at_rest: bool,
+) -> float:  # fmt: skip
+    """Dry friction [Nm] that opposes motion in `direction`, or resists a push in it at rest: the sum over the effects."""
+    total = 0.0
+    place = n[FRICTION_LAWS]
+    for j in range(n[place]):
+        total += friction_law(n[place + 1 + 2 * j], direction, speed, angle, time, at_rest, d, n[place + 2 + 2 * j])
+    return max(total, 0.0) * d[HUB_SHARE + body]
+
+
+@njit
+def effect_torque(d: Numbers, n: Places, body: int, angle: float, speed: float, time: float) -> float:
+    """Non-linear torque [Nm] of the effects; all of it acts on the hub."""
+    total = 0.0
+    place = n[TORQUE_LAWS]
+    for j in range(n[place] if body == 0 else 0):
+        total += torque_law(n[place + 1 + 2 * j], angle, speed, time, d, n[place + 2 + 2 * j])
+    return total
+
+
+@njit
+def angle_of(d: Numbers, n: Places, s: Numbers, mode: int, body: int, z: Numbers, at: int) -> float:
+    """Arm-side angle [rad] of hub or motor."""
+    here = record(n, mode)
+    free = dot(d, here + n[ANGLE] + body * 2 * n[BLOCKS], z, at, 2 * n[BLOCKS])
+    return free + d[here + n[HOLDS_ANGLE] + body] * s[HELD_HUB + body]
+
+
+@njit
+def read_motion(d: Numbers, n: Places, s: Numbers, mode: int, z: Numbers, at: int, w: Numbers, out: int) -> None:
+    """Write to w at `out` what the laws ask for: the bodies' angles, their speeds, the velocities at points of the beam."""
+    here, size, bodies = record(n, mode), 2 * n[BLOCKS], n[BODIES]
+    for body in range(bodies):
+        w[out + body] = angle_of(d, n, s, mode, body, z, at)
+        w[out + bodies + body] = dot(d, here + n[SPEED] + body * size, z, at, size)
+    for point in range(n[POINTS]):
+        w[out + 2 * bodies + point] = dot(d, here + n[DRAG_VELOCITY] + point * size, z, at, size)
+
+
+@njit
+def apply_laws(d: Numbers, n: Places, s: Numbers, mode: int, time: float, w: Numbers, motion: int, out: int) -> None:
+    """Write to w at `out` the torque of friction and effects on each body, then the drag at each point of the beam."""
+    bodies = n[BODIES]
+    for body in range(bodies):
+        angle, speed = w[motion + body], w[motion + bodies + body]
+        if is_stuck(mode, body):
+            w[out + body] = effect_torque(d, n, body, angle, 0.0, time)
+            continue
+        direction = s[HUB_DIRECTION + body]
+        dry = friction_budget(d, n, body, direction, max(speed * direction, 0.0), angle, time, False)
+        w[out + body] = effect_torque(d, n, body, angle, speed, time) - direction * dry
+    place = n[DRAG_LAWS]
+    for point in range(n[POINTS]):
+        total = 0.0
+        for j in range(n[place]):
+            total += drag_law(n[place + 1 + 2 * j], w[motion + 2 * bodies + point], d, n[place + 2 + 2 * j])
+        w[out + bodies + point] = total
+
+
+@njit
+def evaluate_forces(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, out: int) -> None:
+    """Write to w at `out` the forces of the laws now; after them, room for as many numbers twice over is used."""
+    motion = out + n[BODIES] + n[POINTS]
+    read_motion(d, n, s, mode, s, HEADER, w, motion)
+    apply_laws(d, n, s, mode, s[TIME], w, motion, out)
+
+
+@njit
+def rubs(d: Numbers, n: Places, body: int) -> bool:
+    """Whether a body has dry friction at all: without, it never sticks, and zero speed is nothing to it."""
+    return n[n[FRICTION_LAWS]] > 0 and d[HUB_SHARE + body] > 0.0
+
+
+@njit
+def applied_offset(
+    d: Numbers, n: Places, s: Numbers, mode: int, body: int, command: float, w: Numbers,
+    coefficients: int, order: int,
+) -> float:  # fmt: skip
+    """Part of the torque on a held body that is not in its row on z: its coefficient of 1, t, t²/2."""
+    here = record(n, mode)
+    total = 0.0
+    if order == 0:
+        row = here + n[HOLD_DRIVERS] + body * n[DRIVERS]
+        total = d[row + W_COMMAND] * command + d[row + W_ONE] + d[row + W_SIDE] * s[GEAR_SIDE]
+        total += d[row + W_HELD_HUB] * s[HELD_HUB] + d[row + W_HELD_MOTOR] * s[HELD_MOTOR]
+    count = n[BODIES] + n[POINTS]
+    row = here + n[HOLD_FORCES] + body * count
+    return total + dot(d, row, w, coefficients + order * count, count)
+
+
+@njit
+def static_budget(d: Numbers, n: Places, s: Numbers, mode: int, body: int, direction: float) -> float:
+    """Static friction [Nm] that resists a push in `direction` on a held body."""
+    angle = angle_of(d, n, s, mode, body, s, HEADER)
+    return friction_budget(d, n, body, direction, 0.0, angle, s[TIME], True)
+
+
+@njit
+def to_physical(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, out: int) -> None:
+    """Write [q, q̇, extra] to w at `out`."""
+    here, size = record(n, mode), 2 * n[BLOCKS]
+    for i in range(n[STATES]):
+        w[out + i] = dot(d, here + n[PHYSICAL] + i * size, s, HEADER, size)
+    for body in range(n[BODIES]):
+        if is_stuck(mode, body):
+            w[out + body] = s[HELD_HUB + body]
+            w[out + n[COORDINATES] + body] = 0.0
+
+
+@njit
+def enter(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, physical: int) -> None:
+    """Go over to a mode from the physical state in w at `physical`."""
+    s[MODE] = mode
+    here = record(n, mode)
+    for body in range(n[BODIES]):
+        s[HELD_HUB + body] = w[physical + body] if is_stuck(mode, body) else 0.0
+    for i in range(2 * n[BLOCKS]):
+        s[HEADER + i] = dot(d, here + n[MODAL] + i * n[STATES], w, physical, n[STATES])
+
+
+@njit
+def settle(
+    d: Numbers, n: Places, s: Numbers, body: int, command: float, w: Numbers, physical: int,
+    coefficients: int,
+) -> None:  # fmt: skip
+    """Decide whether a body whose speed is zero sticks or turns (thesis section 2.2).
+
+    The torque that would have to hold it is set against the budget of static friction.
+    """
+    w[physical + n[COORDINATES] + body] = 0.0
+    free = int(s[MODE]) & ~(1 << body)
+    held = free | (1 << body)
+    enter(d, n, s, held, w, physical)
+    evaluate_forces(d, n, s, held, w, coefficients)
+    size = 2 * n[BLOCKS]
+    push = dot(d, record(n, held) + n[HOLD] + body * size, s, HEADER, size)
+    push += applied_offset(d, n, s, held, body, command, w, coefficients, 0)
+    direction = 1.0 if push >= 0.0 else -1.0
+    if abs(push) > static_budget(d, n, s, held, body, direction) or not rubs(d, n, body):
+        enter(d, n, s, free, w, physical)
+        s[HUB_DIRECTION + body] = direction

@@ -1,0 +1,220 @@
+"""The linear part of an arm as named quantities, and the matrices that follow from them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from flexarm_env.plant.beam import Beam, Matrix
+
+#: What drives the linear part: the command, dry friction and non-linear torque on hub and motor, the constant 1,
+#: the side on which the gears touch (−1, 0, 1), and the angles of a held hub and a held motor.
+DRIVERS = ("command", "hub_torque", "motor_torque", "one", "gear_side", "held_hub", "held_motor")
+COMMAND, HUB_TORQUE, MOTOR_TORQUE, ONE, GEAR_SIDE, HELD_HUB, HELD_MOTOR = range(len(DRIVERS))
+
+#: Stiffness [Nm/rad] of gears that touch, where backlash asks for a motor of its own but no
+#: compliance is given: stiff enough that windup stays below what a pot resolves.
+GEAR_STIFFNESS = 4000.0
+#: Damping of gears that touch, as a time [s] times their stiffness.
+GEAR_DAMPING_TIME = 5e-4
+
+
+@dataclass
+class Sensor:
+    """One measured signal: reading = gain × quantity + offset, through a first-order filter."""
+
+    gain: float = 1.0
+    offset: float = 0.0
+    filter: float = 0.0
+    position: float = 0.0
+
+
+@dataclass
+class Structure:
+    """Everything linear about an arm, arm side, in SI units. Effects of the structure port edit these quantities."""
+
+    gear_ratio: float
+    torque_constant: float
+    motor_inertia: float
+    hub_inertia: float
+    resistance: float = 0.0  # 0: current drive
+    motor_coulomb_share: float = 0.0
+    motor_viscous_share: float = 0.0
+    elements: int = 0  # 0: a rigid arm
+    length: float = 0.0
+    mass_per_length: float = 0.0
+    bending_stiffness: float = 0.0
+    tip_mass: float = 0.0
+    tip_inertia: float = 0.0
+    viscous: float = 0.0
+    hub_stiffness: float = 0.0
+    hub_torque: float = 0.0
+    beam_damping: float = 0.0
+    root_compliance: float = 0.0
+    gear_compliance: float = 0.0
+    gear_gap: float = 0.0
+    current_lag: float = 0.0
+    input_delay: float = 0.0
+    sensors: dict[str, Sensor] = field(default_factory=dict)
+
+    @property
+    def separate_motor(self) -> bool:
+        """Whether motor and hub are two bodies."""
+        return self.gear_compliance > 0.0 or self.gear_gap > 0.0
+
+    @property
+    def gear_stiffness(self) -> float:
+        """Stiffness of the touching gears, arm side [Nm/rad]."""
+        return 1.0 / self.gear_compliance if self.gear_compliance > 0.0 else GEAR_STIFFNESS
+
+
+@dataclass
+class LinearModel:
+    """M q̈ + B q̇ + K q = Q w + R e, ė = A e + F [q, q̇] + S w, y = Y [q, q̇, e] + D w."""
+
+    names: list[str]
+    mass: Matrix
+    damping: Matrix
+    stiffness: Matrix
+    input: Matrix
+    from_extra: Matrix
+    extra: Matrix
+    extra_from_motion: Matrix
+    extra_from_input: Matrix
+    output: Matrix
+    output_from_input: Matrix
+    drag_force: Matrix
+    drag_velocity: Matrix
+    signals: list[str]
+
+
+def assemble(structure: Structure) -> LinearModel:
+    """Build the matrices of an arm (thesis eqs. 3.9 to 3.14, consistent: see the errata).
+
+    Args:
+        structure: the arm's linear quantities.
+
+    Returns:
+        Matrices on the coordinates [hub, (motor), (root), v_1, s_1, …]; the motor's angle is that of the arm side.
+    """
+    s = structure
+    names = ["hub"] + (["motor"] if s.separate_motor else [])
+    beam = Beam(s.elements, s.length, s.mass_per_length, s.bending_stiffness) if s.elements else None
+    # a beam coordinate stands where its own numbering puts it, the root's slope only if it can turn
+    kept = [] if beam is None else ([1] if s.root_compliance > 0.0 else []) + list(range(2, beam.size))
+    names += [] if beam is None else (["root"] if s.root_compliance > 0.0 else []) + _node_names(s.elements)
+    place = np.array([0] + list(range(len(names) - len(kept), len(names))), dtype=int)
+    size = len(names)
+    mass, damping, stiffness = (np.zeros((size, size)) for _ in range(3))
+
+    def spread(row: Matrix) -> Matrix:
+        wide = np.zeros(size)
+        wide[place] = row[[0, *kept]]
+        return wide
+
+    if beam is not None:
+        pick = np.ix_([0, *kept], [0, *kept])
+        where = np.ix_(place, place)
+        mass[where] += beam.mass[pick]
+        stiffness[where] += beam.stiffness[pick]
+        damping[where] += s.beam_damping * beam.stiffness[pick]
+        tip = spread(beam.deflection_row(s.length, absolute=True))
+        mass += s.tip_mass * np.outer(tip, tip)
+        turn = np.zeros(size)
+        turn[0] = turn[-1] = 1.0
+        mass += s.tip_inertia * np.outer(turn, turn)
+        if s.root_compliance > 0.0:
+            root = names.index("root")
+            stiffness[root, root] += 1.0 / s.root_compliance
+    motor = names.index("motor") if s.separate_motor else 0
+    mass[0, 0] += s.hub_inertia
+    mass[motor, motor] += s.gear_ratio**2 * s.motor_inertia
+    share = s.motor_viscous_share if s.separate_motor else 1.0
+    damping[motor, motor] += s.viscous * share
+    damping[0, 0] += s.viscous * (1.0 - share)
+    stiffness[0, 0] += s.hub_stiffness
+    model = _drive(s, names, motor, mass, damping, stiffness)
+    _sensors(s, model, beam, spread, motor)
+    if beam is not None:
+        points = beam.drag_points()
+        model.drag_velocity = np.array([spread(beam.deflection_row(x, absolute=True)) for x, _ in points])
+        model.drag_force = np.array([w * row for (_, w), row in zip(points, model.drag_velocity, strict=True)]).T
+    return model
+
+
+def _node_names(elements: int) -> list[str]:
+    return [name for node in range(1, elements + 1) for name in (f"deflection_{node}", f"slope_{node}")]
+
+
+def _drive(s: Structure, names: list[str], motor: int, mass: Matrix, damping: Matrix, stiffness: Matrix) -> LinearModel:
+    size = len(names)
+    drivers = np.zeros((size, len(DRIVERS)))
+    drivers[0, HUB_TORQUE] = 1.0
+    drivers[motor, MOTOR_TORQUE] = 1.0 if s.separate_motor else 0.0
+    drivers[0, ONE] = s.hub_torque
+    torque_per_amp = s.gear_ratio * s.torque_constant
+    amps_per_command = 1.0 / s.resistance if s.resistance > 0.0 else 1.0
+    amps_per_speed = -torque_per_amp / s.resistance if s.resistance > 0.0 else 0.0
+    lagged = s.current_lag > 0.0
+    extra = int(lagged)
+    model = LinearModel(
+        names=names,
+        mass=mass,
+        damping=damping,
+        stiffness=stiffness,
+        input=drivers,
+        from_extra=np.zeros((size, extra)),
+        extra=np.zeros((extra, extra)),
+        extra_from_motion=np.zeros((extra, 2 * size)),
+        extra_from_input=np.zeros((extra, len(DRIVERS))),
+        output=np.zeros((0, 0)),
+        output_from_input=np.zeros((0, len(DRIVERS))),
+        drag_force=np.zeros((size, 0)),
+        drag_velocity=np.zeros((0, size)),
+        signals=[],
+    )
+    if lagged:
+        model.from_extra[motor, 0] = torque_per_amp
+        model.extra[0, 0] = -1.0 / s.current_lag
+        model.extra_from_input[0, COMMAND] = amps_per_command / s.current_lag
+        model.extra_from_motion[0, size + motor] = amps_per_speed / s.current_lag
+    else:
+        drivers[motor, COMMAND] = torque_per_amp * amps_per_command
+        damping[motor, motor] -= torque_per_amp * amps_per_speed
+    return model
+
+
+def _sensors(s: Structure, model: LinearModel, beam: Beam | None, spread, motor: int) -> None:  # type: ignore[no-untyped-def]
+    size = len(model.names)
+    rows = []
+    for signal, sensor in s.sensors.items():
+        row = np.zeros(2 * size)
+        if signal == "arm_angle":
+            row[0] = 1.0
+        elif signal == "motor_speed":
+            row[size + motor] = s.gear_ratio
+        elif beam is not None and signal == "tip_deflection":
+            row[:size] = spread(beam.deflection_row(s.length, absolute=False))
+        elif beam is not None:
+            row[:size] = spread(beam.moment_row(sensor.position))
+        rows.append(sensor.gain * row)
+    filtered = [i for i, sensor in enumerate(s.sensors.values()) if sensor.filter > 0.0]
+    before = model.extra.shape[0]
+    total = before + len(filtered)
+    model.extra = np.pad(model.extra, (0, len(filtered)))
+    model.from_extra = np.pad(model.from_extra, ((0, 0), (0, len(filtered))))
+    model.extra_from_motion = np.pad(model.extra_from_motion, ((0, len(filtered)), (0, 0)))
+    model.extra_from_input = np.pad(model.extra_from_input, ((0, len(filtered)), (0, 0)))
+    model.output = np.zeros((len(rows), 2 * size + total))
+    model.output_from_input = np.zeros((len(rows), len(DRIVERS)))
+    model.signals = list(s.sensors)
+    for i, (sensor, row) in enumerate(zip(s.sensors.values(), rows, strict=True)):
+        model.output_from_input[i, ONE] = sensor.offset
+        if i in filtered:
+            place = before + filtered.index(i)
+            model.extra[place, place] = -1.0 / sensor.filter
+            model.extra_from_motion[place] = row / sensor.filter
+            model.output[i, 2 * size + place] = 1.0
+        else:
+            model.output[i, : 2 * size] = row

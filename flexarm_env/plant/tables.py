@@ -1,0 +1,152 @@
+"""The flat arrays that the kernel reads, packed from the modes and the active laws."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.plant import layout as at
+from flexarm_env.plant.beam import Matrix
+from flexarm_env.plant.modal import Mode, mode_of
+from flexarm_env.plant.structure import DRIVERS, HUB_TORQUE, MOTOR_TORQUE, LinearModel, Structure
+
+RESPONSE = 5
+#: Longest step [s] over which a force that depends on the motion is fitted by one parabola.
+LONGEST_VARYING_STEP = 2.5e-3
+#: Change of a force [Nm, N/m] below which the sweeps that fit it stop.
+TOLERANCE = 1e-12
+
+
+@dataclass(frozen=True)
+class ActiveLaw:
+    """One law at work: its place in the catalogue's list of laws, its parameters in the law's order.
+
+    `varies` says that it changes while a body turns one way, so that the force must be fitted over each step.
+    """
+
+    kind: int
+    port: str
+    parameters: tuple[float, ...]
+    varies: bool
+
+
+def pack(
+    structure: Structure, model: LinearModel, active: Sequence[ActiveLaw], interval: float
+) -> tuple[Matrix, NDArray[np.int64], int]:
+    """Return (d, n, whole samples of delay) for the kernel; the blocks' responses are still to be filled in.
+
+    Args:
+        structure: the linear quantities.
+        model: their matrices.
+        active: the laws at work.
+        interval: sampling time [s].
+    """
+    bodies = 2 if structure.separate_motor else 1
+    count = 8 if structure.gear_gap > 0.0 else 2**bodies
+    modes = [mode_of(structure, model, which) for which in range(count)]
+    varying = any(law.varies for law in active)
+    points = model.drag_force.shape[1] if any(law.port == "drag" for law in active) else 0
+    whole, early = split_delay(structure.input_delay, interval)
+    n = np.zeros(at.COUNTS, dtype=np.int64)
+    blocks = max(len(mode.c0) for mode in modes)
+    reach = (2 * bodies + points) * 3 * (bodies + points) if varying else 0
+    records = [_record(model, mode, which, bodies, points, blocks, reach) for which, mode in enumerate(modes)]
+    n[at.BODIES], n[at.COORDINATES], n[at.POINTS] = bodies, len(model.names), points
+    n[at.COUPLED] = bodies == 2 or structure.hub_stiffness != 0.0
+    n[at.VARYING] = varying
+    n[at.GLIDES] = bodies == 1 and not varying and not points
+    n[at.BLOCKS] = blocks
+    n[at.SIGNALS], n[at.STATES], n[at.DRIVERS] = len(model.signals), modes[0].physical.shape[0], len(DRIVERS)
+    n[at.MODES] = at.CONSTANTS
+    place = 0
+    for key, value in records[0].items():
+        n[key] = place
+        place += value.size
+    n[at.STRIDE] = place
+    longest = LONGEST_VARYING_STEP if varying else np.inf
+    parts = np.array([early, interval - early])
+    steps = np.where(parts > 0.0, np.maximum(np.ceil(parts / longest - 1e-9), 1), 0)
+    n[at.EARLY_SUBSTEPS], n[at.LATE_SUBSTEPS] = steps.astype(int)
+    n[at.PARAMETERS] = at.CONSTANTS + count * place
+    lists, parameters = _law_lists(active, int(n[at.PARAMETERS]))
+    laws: list[int] = []
+    for key, rows in zip((at.FRICTION_LAWS, at.TORQUE_LAWS, at.DRAG_LAWS, at.DRIVE_LAWS), lists, strict=True):
+        n[key] = at.COUNTS + len(laws)
+        laws += rows
+    share = structure.motor_coulomb_share if bodies == 2 else 0.0
+    lengths = parts / np.maximum(steps, 1)
+    gap = structure.gear_gap / structure.gear_ratio
+    head = [gap, TOLERANCE, interval, lengths[0], lengths[1], 1.0 - share, share, 0.0]
+    d = np.concatenate([head, *(v.ravel() for record in records for v in record.values()), parameters])
+    return d, np.concatenate([n, np.array(laws, dtype=np.int64)]), whole
+
+
+def split_delay(delay: float, interval: float) -> tuple[int, float]:
+    """Return whole samples and the rest [s] of a delay; the whole part may be negative."""
+    whole = int(np.floor(delay / interval + 1e-9))
+    rest = delay - whole * interval
+    return whole, rest if rest > 1e-9 * interval else 0.0
+
+
+def _record(
+    model: LinearModel, mode: Mode, which: int, bodies: int, points: int, blocks: int, reach: int
+) -> dict[int, Matrix]:
+    size = len(model.names)
+    torques = [HUB_TORQUE, MOTOR_TORQUE][:bodies]
+    physical = _wide(mode.physical, blocks)
+    c0, c1 = (np.concatenate([c, np.zeros(blocks - len(c))]) for c in (mode.c0, mode.c1))
+    hold = _wide(mode.hold, blocks)
+    speed, windup = physical[size : size + bodies], physical[bodies - 1] - physical[0]
+    return {
+        at.C0: c0,
+        at.C1: c1,
+        at.RESPONSES: np.zeros((2, 2, blocks, RESPONSE)),
+        at.GLIDE: np.zeros((2, blocks, at.GLIDE_SIZE)),
+        at.REACH: np.zeros((2, 2, reach)),
+        at.PHYSICAL: physical,
+        at.MODAL: _wide(mode.modal.T, blocks).T,
+        at.FORCING: _wide(mode.forcing.T, blocks).T,
+        at.FORCE_COLUMNS: _wide(np.vstack([mode.forcing.T[torques], mode.drag_forcing.T[:points]]), blocks),
+        at.SPEED: speed,
+        at.SPEED_WEIGHT: _weights(speed, c0, c1),
+        at.ANGLE: physical[:bodies],
+        at.HOLDS_ANGLE: np.array([float((which >> body) & 1) for body in range(bodies)]),
+        at.WINDUP: windup,
+        at.WINDUP_WEIGHT: _weights(windup[None], c0, c1),
+        at.HOLD: hold,
+        at.HOLD_WEIGHT: _weights(hold, c0, c1),
+        at.HOLD_DRIVERS: mode.hold_drivers,
+        at.HOLD_FORCES: np.hstack([mode.hold_drivers[:, torques], mode.hold_drag[:, :points]]),
+        at.DRAG_VELOCITY: (model.drag_velocity @ physical[size : 2 * size])[:points],
+        at.OUTPUT: model.output @ physical,
+        at.OUTPUT_DRIVERS: model.output @ mode.held + model.output_from_input,
+    }
+
+
+def _wide(matrix: Matrix, blocks: int) -> Matrix:
+    wide = np.zeros((len(matrix), 2 * blocks))
+    wide[:, : matrix.shape[1]] = matrix
+    return wide
+
+
+def _weights(rows: Matrix, c0: Matrix, c1: Matrix) -> Matrix:
+    """How much each block's amplitude can bend each row's value: what curvature_bound sums up."""
+    a = rows[:, 0::2] - rows[:, 1::2] * c1
+    weights: Matrix = np.sqrt(a**2 + rows[:, 1::2] ** 2 * c0)
+    return weights
+
+
+def _law_lists(active: Sequence[ActiveLaw], start: int) -> tuple[list[list[int]], list[float]]:
+    parameters: list[float] = []
+    lists = []
+    for port in ("friction", "torque", "drag", "drive"):
+        laws = [law for law in active if law.port == port]
+        rows = [len(laws)]
+        for law in laws:
+            rows += [law.kind, start + len(parameters)]
+            parameters += law.parameters
+        lists.append(rows)
+    return lists, parameters

@@ -1,0 +1,156 @@
+"""Forces that vary with the motion within a step: fitted by parabolas in time (exponential collocation)."""
+
+from __future__ import annotations
+
+from numba import njit
+
+from flexarm_env.plant.layout import (
+    ANGLE,
+    BLOCKS,
+    BODIES,
+    C0,
+    C1,
+    COUPLED,
+    DRAG_VELOCITY,
+    DRIVERS,
+    FORCE_COLUMNS,
+    FORCING,
+    GEAR_SIDE,
+    HELD_HUB,
+    HELD_MOTOR,
+    POINTS,
+    SPEED,
+    TIME,
+    TOLERANCE,
+    VARYING,
+    W_COMMAND,
+    W_HELD_HUB,
+    W_HELD_MOTOR,
+    W_ONE,
+    W_SIDE,
+    Numbers,
+    Places,
+)
+from flexarm_env.plant.propagate import RESPONSE, advance
+from flexarm_env.plant.stick_slip import apply_laws, evaluate_forces, read_motion, record
+
+SWEEPS = 15
+
+
+@njit
+def constant_forcing(
+    d: Numbers, n: Places, s: Numbers, command: float, mode: int, w: Numbers, force: int,
+) -> None:  # fmt: skip
+    """Write what stays over the substep: command, constant torque, gears' side, held angles."""
+    row = record(n, mode) + n[FORCING]
+    for i in range(2 * n[BLOCKS]):
+        total = d[row + W_COMMAND] * command + d[row + W_ONE]
+        if n[COUPLED]:
+            total += d[row + W_SIDE] * s[GEAR_SIDE]
+            total += d[row + W_HELD_HUB] * s[HELD_HUB] + d[row + W_HELD_MOTOR] * s[HELD_MOTOR]
+        w[force + i] = total
+        row += n[DRIVERS]
+
+
+@njit
+def add_forces(d: Numbers, n: Places, mode: int, w: Numbers, coefficients: int, force: int) -> None:
+    """Add torque and drag, coefficients of 1, t, t²/2, to the force on the blocks."""
+    count, size = n[BODIES] + n[POINTS], 2 * n[BLOCKS]
+    for order in range(3 if n[VARYING] else 1):
+        column = record(n, mode) + n[FORCE_COLUMNS]
+        for j in range(count):
+            c = w[coefficients + order * count + j]
+            for i in range(size):
+                w[force + order * size + i] += d[column + i] * c
+            column += size
+
+
+@njit
+def add_reach(
+    d: Numbers, u: float, v: float, c0: float, c1: float, table: Numbers, at: int, column: int, size: int, count: int,
+    to: Numbers, out: int,
+) -> None:  # fmt: skip
+    """Add how far forces 1, t, t²/2 along each column move u p + v P of one block, by the time of the table at `at`."""
+    for order in range(3):
+        faster, slower = table[at + 1 + order], table[at + 2 + order]  # S and R₀, R₀ and R₁, or R₁ and R₂
+        by_first = u * (faster + c1 * slower) - v * c0 * slower
+        by_second = u * slower + v * faster
+        for j in range(count):
+            to[out + j] += by_first * d[column + j * size] + by_second * d[column + j * size + 1]
+        out += count
+
+
+@njit
+def reach(d: Numbers, n: Places, mode: int, table: Numbers, at: int, to: Numbers, out: int) -> None:
+    """Write how each force (order by order) moves each quantity of read_motion, by the time of the table at `at`."""
+    here, size = record(n, mode), 2 * n[BLOCKS]
+    bodies, count = n[BODIES], n[BODIES] + n[POINTS]
+    for i in range(2 * bodies + n[POINTS]):
+        row = here + n[DRAG_VELOCITY] + (i - 2 * bodies) * size
+        if i < bodies:
+            row = here + n[ANGLE] + i * size
+        elif i < 2 * bodies:
+            row = here + n[SPEED] + (i - bodies) * size
+        for j in range(3 * count):
+            to[out + j] = 0.0
+        for k in range(n[BLOCKS]):
+            c0, c1, u, v = d[here + n[C0] + k], d[here + n[C1] + k], d[row + 2 * k], d[row + 2 * k + 1]
+            column = here + n[FORCE_COLUMNS] + 2 * k
+            add_reach(d, u, v, c0, c1, table, at + RESPONSE * k, column, size, count, to, out)
+        out += 3 * count
+
+
+@njit
+def fit_parabola(w: Numbers, start: int, middle: int, end: int, count: int, t: float, out: int) -> None:
+    """Write coefficients of 1, t, t²/2 of the parabolas through values at the start, middle and end of t."""
+    for j in range(count):
+        a, b, c = w[start + j], w[middle + j], w[end + j]
+        w[out + j] = a
+        w[out + count + j] = (4.0 * b - 3.0 * a - c) / t
+        w[out + 2 * count + j] = 4.0 * (a - 2.0 * b + c) / (t * t)
+
+
+@njit
+def collocate(
+    d: Numbers, n: Places, s: Numbers, mode: int, command: float, t: float, table: Numbers, at: int, shifts: Numbers,
+    shift: int, w: Numbers, trial: int, nodes: int, motion: int, force: int, coefficients: int,
+) -> None:  # fmt: skip
+    """Find the force over t as the parabola through its values at start, middle and end of the motion it causes.
+
+    Order four in t, solved by sweeps over the few quantities that the laws ask for: without the laws' forces they
+    move as `table` says, and by each force as `shifts` says, both for the middle, then the end (exponential collocation
+    on Lobatto points: Hochbruck and Ostermann, Exponential integrators, Acta Numerica 2010, section 2.2).
+    """
+    here = record(n, mode)
+    blocks, count, quantities = n[BLOCKS], n[BODIES] + n[POINTS], 2 * n[BODIES] + n[POINTS]
+    new, free = nodes + 3 * count, motion + quantities
+    evaluate_forces(d, n, s, mode, w, nodes)
+    constant_forcing(d, n, s, command, mode, w, force)
+    for i in range(4 * blocks):
+        w[force + 2 * blocks + i] = 0.0
+    for half in range(2):
+        advance(d, here + n[C0], here + n[C1], blocks, table, at + half * RESPONSE * blocks, s, w, force, 0, trial)
+        read_motion(d, n, s, mode, w, trial, w, free + half * quantities)
+    for j in range(count):
+        w[nodes + count + j] = w[nodes + 2 * count + j] = w[nodes + j]
+    before = 1.0
+    for _ in range(SWEEPS):
+        fit_parabola(w, nodes, nodes + count, nodes + 2 * count, count, t, coefficients)
+        change = 0.0
+        for half in range(2):
+            for i in range(quantities):
+                total, row = w[free + half * quantities + i], shift + (half * quantities + i) * 3 * count
+                for j in range(3 * count):
+                    total += shifts[row + j] * w[coefficients + j]
+                w[motion + i] = total
+            apply_laws(d, n, s, mode, s[TIME] + 0.5 * (half + 1) * t, w, motion, new + half * count)
+        for j in range(2 * count):
+            change = max(change, abs(w[new + j] - w[nodes + count + j]))
+            w[nodes + count + j] = w[new + j]
+        if change * min(change / before, 1.0) < d[TOLERANCE]:  # what further sweeps would change
+            break
+        before = change
+    fit_parabola(w, nodes, nodes + count, nodes + 2 * count, count, t, coefficients)
+    add_forces(d, n, mode, w, coefficients, force)
+
+

@@ -1,0 +1,162 @@
+"""Units: text such as "rpm" or "0.0116 rad" to plain SI numbers, by pint."""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+from typing import TYPE_CHECKING
+
+from flexarm_env.errors import InputError, did_you_mean
+
+if TYPE_CHECKING:
+    import pint
+
+# A whitelist, because pint evaluates what it is given: "V**9**9**9" would not return.
+_TERM = r"[A-Za-zµμΩ°]+(?:_[A-Za-z]+)*(?: *(?:\^|\*\*) *-?\d|[²³])?"
+_UNIT = re.compile(rf"(?:1 */ *)?{_TERM}(?: *[*/·] *{_TERM}| +{_TERM})*")
+_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?:\s*$|\s*(?=[^\d\s.,:;-])(.*?)\s*$)")
+_LONGEST = 60
+# Without these pint reads Nm as "number metre" and the others not at all.
+_COMPOUNDS = (
+    "newton_meter = newton * meter = Nm",
+    "newton_meter_second = newton * meter * second = Nms",
+    "volt_second = volt * second = Vs",
+    "ampere_second = ampere * second = As",
+)
+_COMMON = {
+    "s": ("s", "ms", "us", "min"),
+    "A": ("A", "mA"),
+    "V": ("V", "mV"),
+    "rad": ("rad", "mrad", "deg", "turn"),
+    "rad/s": ("rad/s", "deg/s", "rpm"),
+    "m": ("m", "mm", "cm"),
+    "kg": ("kg", "g"),
+}
+
+
+@functools.cache
+def _registry() -> pint.UnitRegistry[float]:
+    import pint  # a quarter of a second, which files in SI units need not pay
+
+    registry: pint.UnitRegistry[float] = pint.UnitRegistry()
+    for definition in _COMPOUNDS:
+        registry.define(definition)
+    return registry
+
+
+def _allowed(target: str) -> str:
+    common = _COMMON.get(target)
+    return f"write one of {', '.join(common)}" if common else f"write a unit that converts to {target}"
+
+
+@functools.lru_cache(maxsize=256)
+def _parse(text: str, target: str) -> pint.Unit:
+    """Return the pint unit of a text; `target` is only for the message."""
+    import pint
+
+    if len(text) <= _LONGEST and _UNIT.fullmatch(text):
+        try:
+            return _registry().parse_units(text)
+        except (pint.PintError, ValueError):
+            pass
+    common = _COMMON.get(target, ())
+    hint = did_you_mean(text.lower(), common) if common else f"; {_allowed(target)}"
+    raise InputError(f"unknown unit {text[:_LONGEST]!r}{hint}")
+
+
+def _angle_power(unit: pint.Unit) -> float:
+    root = _registry().Quantity(1.0, unit).to_root_units()
+    return next((float(power.real) for name, power in root.unit_items() if name == "radian"), 0.0)
+
+
+def _same_kind(unit: pint.Unit, target: pint.Unit) -> bool:
+    """Tell whether a unit measures what the target does.
+
+    To pint an angle is a bare number, so that Hz would become rad/s without its 2π. Angles must agree,
+    except in forces and voltages "per radian", where Nm for Nm/rad is customary.
+    """
+    if unit.dimensionality != target.dimensionality:
+        return False
+    customary = "[mass]" in target.dimensionality and "hertz" not in str(unit)
+    return customary or _angle_power(unit) == _angle_power(target)
+
+
+def converts(unit: str, target: str) -> bool:
+    """Tell whether values in `unit` can be given in `target`.
+
+    Raises:
+        InputError: for a unit that does not exist.
+    """
+    return unit == target or _same_kind(_parse(unit, target), _parse(target, target))
+
+
+def factor(unit: str, target: str, scale: str | float = 1.0) -> float:
+    """Return how many `target` one `unit`, multiplied by `scale`, is: `factor("rpm", "rad/s")` is 2π/60.
+
+    Args:
+        unit: the unit of the values, such as "deg" or "V".
+        target: the unit wanted, such as "rad".
+        scale: a plain number, or a quantity such as "2 rad/V" whose unit counts.
+
+    Raises:
+        InputError: for an unknown unit, one that measures something else than `target`, or one such as degC
+            whose zero is elsewhere.
+    """
+    number, scale_unit = (float(scale), "") if isinstance(scale, (int, float)) else split(scale)
+    if unit == target and not scale_unit:
+        return number
+    goal = _parse(target, target)
+    source = _parse(unit, target)
+    shown = unit
+    if scale_unit:
+        source = _registry().Unit(source * _parse(scale_unit, f"{target} per {unit}"))
+        shown = f"{unit} × {scale_unit}"
+    if not _same_kind(source, goal) or _registry().Quantity(0.0, source).to(goal).magnitude != 0.0:
+        raise InputError(f"unit '{shown}' does not convert to {target}; {_allowed(target)}")
+    return number * float(_registry().Quantity(1.0, source).to(goal).magnitude)
+
+
+def is_quantity(text: str) -> bool:
+    """Tell whether a text has the form of a number, alone or with a unit (which need not exist)."""
+    match = _QUANTITY.match(text)
+    return bool(match and (not match[2] or _UNIT.fullmatch(match[2])))
+
+
+def split(text: str) -> tuple[float, str]:
+    """Return the finite number and the unit ("" if none) of a text such as "0.0116 rad"."""
+    match = _QUANTITY.match(text)
+    if match is None or not math.isfinite(float(match[1])):
+        raise InputError(f"{text[:_LONGEST]!r} is not a number with a unit; write for example '0.3 kg'")
+    return float(match[1]), match[2] or ""
+
+
+def quantity(value: str | float, target: str) -> float:
+    """Return a value in `target` units.
+
+    Args:
+        value: a text such as "0.0116 rad", or a plain number, which is taken as it is.
+        target: the unit wanted; "" for a bare number.
+
+    Raises:
+        InputError: for a text that is no number with a unit, or a unit that does not convert to `target`.
+    """
+    if not isinstance(value, str):
+        return float(value)
+    number, unit = split(value)
+    if unit and not target:
+        raise InputError(f"unit '{unit}' on a bare number; write {number:g}")
+    return number * factor(unit, target) if unit else number
+
+
+def base_value(text: str) -> float:
+    """Return a quantity such as "20 degC" in SI base units (293.15); a plain number as it is.
+
+    Raises:
+        InputError: for a text that is no number with a unit, or a unit that does not exist.
+    """
+    number, unit = split(text)
+    if not unit:
+        return number
+    parsed = _parse(unit, "SI")
+    return float(_registry().Quantity(number, parsed).to_base_units().magnitude)

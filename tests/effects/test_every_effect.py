@@ -1,0 +1,232 @@
+"""What every effect of the catalogue promises, so that a new one is tested as soon as it is there."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import inspect
+import itertools
+import math
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
+import numba
+import numpy as np
+import pytest
+
+from flexarm_env.arm import Arm
+from flexarm_env.effects import Effect, catalogue
+from flexarm_env.effects.catalogue import LAW_PORTS, load_effect
+from flexarm_env.errors import InputError
+from flexarm_env.identify.simulate import simulate
+from flexarm_env.plant.compose import PORTS, compose
+from flexarm_env.signals import SIGNALS
+from flexarm_env.units import factor
+
+NAMES = list(catalogue())
+LAWS = [(name, port) for name in NAMES for port in LAW_PORTS if catalogue()[name].port(port) is not None]
+FRICTION = [name for name, port in LAWS if port == "friction"]
+SIZES = (0.3, 1.0, 3.0)
+#: Ordinary values of everything that a law may ask for.
+GRID = {
+    "direction": (-1.0, 1.0),
+    "speed": (0.0, 1e-3, 0.1, 2.0, 30.0),
+    "angle": (-4.0, -0.3, 0.0, 1.1),
+    "time": (0.0, 0.7, 100.0),
+    "at_rest": (False, True),
+    "velocity": (-20.0, -0.5, 0.0, 0.5, 20.0),
+    "command": (-6.0, -0.05, 0.0, 0.05, 6.0),
+    "previous": (-6.0, 0.0, 2.0),
+    "interval": (0.002, 0.005),
+}
+
+
+@pytest.fixture(scope="module")
+def arm() -> Arm:
+    """An arm that has every sensor, so that every effect can be added."""
+    thesis = Arm.load("thesis-fem")
+    tip = {**thesis.sensors["arm_angle"], "noise": 1e-3, "resolution": 0.0}
+    made = replace(thesis, sensors={**thesis.sensors, "tip_deflection": tip})
+    assert set(made.sensors) == set(SIGNALS)
+    return made
+
+
+def sized(effect: type[Effect], share: float) -> dict[str, float]:
+    """Parameters with those that say how strong the effect is at a share of their typical value."""
+    values = {}
+    for key, p in effect.parameters.items():
+        value = p.typical * share if p.null is not None else p.typical
+        values[key] = min(max(round(value) if key == "elements" else value, p.low), p.high)
+    return values
+
+
+def absent(effect: type[Effect]) -> dict[str, float]:
+    return {key: p.typical if p.null is None else p.null for key, p in effect.parameters.items()}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_it_says_what_it_is(name):
+    effect = catalogue()[name]
+    assert effect.name == name
+    assert re.fullmatch(r"[a-z]+(_[a-z]+)*", name)
+    assert effect.__module__ == f"flexarm_env.effects.{name}"
+    for text in (effect.equation, effect.looks_like, effect.__doc__):
+        assert text
+        assert text.strip()
+    assert set(effect.confused_with) <= set(NAMES) - {name}
+    assert set(effect.needs) <= {"beam", *SIGNALS}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_its_parameters_are_whole(name):
+    effect = catalogue()[name]
+    assert effect.parameters
+    for key, p in effect.parameters.items():
+        assert key.isidentifier()
+        assert p.meaning, key
+        assert p.unit == "" or factor(p.unit, p.unit) == 1.0
+        assert p.low < p.high, key
+        assert p.low <= p.typical <= p.high, key
+        assert math.isfinite(p.typical), key
+        assert p.null is None or p.low <= p.null <= p.high, key
+    assert any(p.null is not None for p in effect.parameters.values()), "no value means absence"
+    for start in effect.starts():
+        assert set(start) == set(effect.parameters)
+        assert all(effect.parameters[key].low <= value <= effect.parameters[key].high for key, value in start.items())
+        assert not effect.absent(start)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_its_ports_take_its_parameters_and_what_the_port_gives(name):
+    effect = catalogue()[name]
+    ports = [port for port in ("structure", *LAW_PORTS) if effect.port(port) is not None]
+    assert ports
+    for port in ports:
+        given = ("structure",) if port == "structure" else PORTS[port][0]
+        wanted = inspect.signature(effect.port(port)).parameters
+        assert set(wanted) <= {*given, *effect.parameters}
+        assert not set(given) & set(effect.parameters), "a parameter hides what the port gives"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_absent_is_bit_equal_to_not_listed(arm, name):
+    effect = catalogue()[name]
+    without = arm.without_effect(name)
+    null = without.with_effect(name, **absent(effect))
+    runs = [simulate(a, "square", duration=1.0) for a in (without, null)]
+    assert runs[0].command.tobytes() == runs[1].command.tobytes()
+    for signal in arm.signals:
+        assert runs[0].signals[signal].tobytes() == runs[1].signals[signal].tobytes()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_it_changes_what_is_measured(arm, name):
+    base = replace(arm, constants={**arm.constants, "beam": {**arm.constants["beam"], "elements": 1.0}})
+    with_it = base.without_effect(name).with_effect(name, **sized(catalogue()[name], 1.0))
+    runs = [simulate(a, "square", duration=4.5, noise=False) for a in (base.without_effect(name), with_it)]
+    assert any((runs[0].signals[s] != runs[1].signals[s]).any() for s in arm.signals)
+
+
+@functools.cache
+def jitted_law(port: str) -> Callable[..., float]:
+    """The kernel's switch over the laws of a port. Only compiled code can call it, so it gets a caller."""
+    scope = {"law": getattr(compose(catalogue().laws), f"{port}_law")}
+    arguments = ", ".join(("kind", *PORTS[port][0], "d", "k"))
+    exec(f"def call({arguments}): return law({arguments})", scope)
+    return numba.njit(scope["call"])
+
+
+@pytest.mark.parametrize(("name", "port"), LAWS)
+def test_jitted_equals_python(name, port):
+    effect, kind = catalogue()[name], catalogue().kinds[name, port]
+    jitted, python = jitted_law(port), effect.port(port)
+    for share in SIZES:
+        values = sized(effect, share)
+        data = np.array(list(values.values()))
+        for point in itertools.product(*(GRID[quantity] for quantity in PORTS[port][0])):
+            given = dict(zip(PORTS[port][0], point, strict=True))
+            expected = python(**{a: (given | values)[a] for a in inspect.signature(python).parameters})
+            assert jitted(kind, *point, data, 0) == pytest.approx(expected, rel=1e-14, abs=1e-300)
+
+
+@pytest.mark.parametrize("share", SIZES)
+@pytest.mark.parametrize("name", NAMES)
+def test_it_stays_finite(arm, name, share):
+    run = simulate(arm.with_effect(name, **sized(catalogue()[name], share)), "square", noise=False)
+    for signal, values in run.signals.items():
+        assert np.isfinite(values).all(), signal
+    assert np.abs(run.signals["arm_angle"]).max() < 20.0
+
+
+@pytest.mark.parametrize("name", FRICTION)
+def test_friction_dissipates(arm, name):
+    alone = replace(arm, effects={}).with_effect(name, **sized(catalogue()[name], 3.0))
+    structure, plant = alone.structure(), alone.plant(0.005)
+    plant.place()
+    plant.replay(np.full(60, 3.0))
+    size = len(plant.model.names)
+    windup = np.array([{"hub": -1.0, "motor": 1.0}.get(q, 0.0) for q in plant.model.names])
+    gears = structure.gear_stiffness * np.outer(windup, windup) if structure.separate_motor else 0.0
+
+    def energy() -> float:
+        q, rate = np.split(plant.physical()[: 2 * size], 2)
+        return 0.5 * (rate @ plant.model.mass @ rate + q @ (plant.model.stiffness + gears) @ q)
+
+    levels = [energy()]
+    for _ in range(600):
+        plant.replay(np.zeros(2))
+        levels.append(energy())
+    assert levels[0] > 0.01
+    assert np.diff(levels).max() <= 1e-9 * levels[0]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_misspelt_name_gets_a_hint(arm, name):
+    wrong = name[:-2] + name[-1]
+    with pytest.raises(InputError, match="did you mean"):
+        arm.with_effect(wrong)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_misspelt_parameter_or_a_value_out_of_bounds_is_refused(arm, name):
+    key, p = next(iter(catalogue()[name].parameters.items()))
+    with pytest.raises(InputError, match=f"no parameter '{key}x'"):
+        arm.with_effect(name, **{f"{key}x": 1.0})
+    if math.isfinite(p.high):
+        with pytest.raises(InputError, match="out of bounds"):
+            arm.with_effect(name, **{key: p.high * 2.0 + 1.0})
+
+
+OWN = '''
+from flexarm_env.effects import Effect
+from flexarm_env.effects.base import torque_size
+
+
+class Spring(Effect):
+    """A spring that hardens."""
+
+    name = "hard_spring"
+    equation = "T = -k angle**3"
+    parameters = {"stiffness": torque_size("k", 0.1)}
+    looks_like = "it pulls back, the more the further"
+
+    @staticmethod
+    def torque(angle, stiffness):
+        return -stiffness * angle**3
+'''
+
+
+def test_an_effect_of_one_s_own_joins_the_catalogue(arm, tmp_path):
+    file = tmp_path / "mine.py"
+    file.write_text(OWN)
+    effect = load_effect(f"{file}:Spring")
+    known = catalogue().extended(effect)
+    assert "hard_spring" in known
+    assert "hard_spring" not in catalogue()
+    mine = replace(arm, known=known)
+    runs = [simulate(a, "pulse", duration=2.0, noise=False) for a in (mine, mine.with_effect("hard_spring"))]
+    ends = [run.signals["arm_angle"][-1] for run in runs]
+    assert ends[1] < ends[0] - 0.1
+    # Its module is the file: the catalogue's own files are named as their effects are.
+    assert importlib.import_module("flexarm_env.effects.coulomb").Coulomb is catalogue()["coulomb"]

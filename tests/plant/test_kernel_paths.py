@@ -1,0 +1,133 @@
+"""Every way through the kernel gives the same motion: short cut or not, tabulated or not, jitted or not."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from plant_arms import FRICTION, law, noise, pulse, relative, thesis_plant
+
+from flexarm_env.plant import layout as at
+from flexarm_env.plant.propagate import block_response
+
+ARMS = {
+    "base": {},
+    "four elements": {"elements": 4},
+    "rigid": {"elements": 0},
+    "cable, lag, damping": {"hub_stiffness": 0.5, "current_lag": 0.004, "beam_damping": 1e-4},
+    "root": {"elements": 2, "root_compliance": 0.01},
+    "gears": {"gear_compliance": 1 / 300},
+    "backlash": {"gear_gap": 0.01},
+    "drive": {"laws": (*FRICTION, law("saturation", 2.5)), "resistance": 1.2},
+    "constant torque": {"laws": (*FRICTION, law("constant", 0.05))},
+    "stribeck": {"laws": (*FRICTION, law("stribeck", 0.05, 0.3))},
+    "drag, cogging": {"elements": 2, "laws": (*FRICTION, law("air_drag", 0.05), law("cogging", 0.03, 12.0))},
+}
+SMOOTH = [name for name in ARMS if name not in ("stribeck", "drag, cogging")]
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_tabulated_and_untabulated_steps_agree(name):
+    current = noise(0, 100)
+    even = thesis_plant(**ARMS[name]).replay(current)
+    uneven = thesis_plant(**ARMS[name]).replay(current, np.full(100, 0.005))
+    assert relative(uneven, even) < 1e-9
+
+
+@pytest.mark.parametrize("name", SMOOTH)
+@pytest.mark.parametrize("current", [pulse(300), noise(1, 100)], ids=["pulse", "noise"])
+def test_halving_the_step_changes_nothing(name, current):
+    whole = thesis_plant(**ARMS[name]).replay(current)
+    halves = thesis_plant(**ARMS[name], interval=0.0025).replay(np.repeat(current, 2))[::2]
+    assert relative(halves, whole) < (1e-6 if name == "backlash" else 1e-8)  # impacts amplify rounding
+
+
+@pytest.mark.parametrize("name", ["stribeck", "drag, cogging"])
+def test_fitted_forces_converge(name):
+    current = pulse(300)
+    fine = thesis_plant(**ARMS[name], interval=0.000625).replay(np.repeat(current, 8))[::8]
+    errors = [
+        relative(thesis_plant(**ARMS[name], interval=0.0025 / part).replay(np.repeat(current, 2 * part))[:: 2 * part], fine)
+        for part in (1, 2)
+    ]
+    assert errors[0] < 1e-4
+    assert errors[1] < errors[0] / 4
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_short_cut_agrees_with_the_long_way(name):
+    current = np.concatenate([pulse(200), noise(2, 50)])
+    plant, slow = thesis_plant(**ARMS[name]), thesis_plant(**ARMS[name])
+    slow.layout[at.GLIDES] = 0
+    assert relative(plant.replay(current), slow.replay(current)) < 1e-9
+
+
+@pytest.mark.parametrize(("delay", "shift"), [(0.005, 1), (0.015, 3)])
+def test_delay_of_whole_samples_shifts_the_motion(delay, shift):
+    prompt = thesis_plant().replay(pulse())
+    late = thesis_plant(input_delay=delay).replay(pulse())
+    assert np.array_equal(late[shift:], prompt[:-shift])
+
+
+@pytest.mark.parametrize("name", ["base", "stribeck", "backlash"])
+def test_delay_of_part_of_a_sample_is_a_finer_shift(name):
+    current = pulse(300)
+    late = thesis_plant(**ARMS[name], input_delay=0.0075).replay(current)
+    fine = thesis_plant(**ARMS[name], interval=0.0025).replay(np.repeat(current, 2))
+    moved = np.vstack([np.zeros((3, fine.shape[1])), fine[:-3]])
+    assert relative(late, moved[::2]) < 1e-8
+
+
+def test_feedback_of_a_perfect_measurement_corrects_nothing():
+    plant = thesis_plant(4)
+    gains = np.full((plant.modes, 2 * plant.blocks + plant.bodies, len(plant.signals)), 0.1)
+    readings = plant.replay(noise(3, 100))
+    plant.place()
+    assert np.array_equal(plant.replay(noise(3, 100), gains=gains, measured=readings), readings)
+
+
+def test_replay_may_be_cut_anywhere():
+    current = noise(4, 200)
+    whole = thesis_plant(4).replay(current)
+    plant = thesis_plant(4)
+    parts = [plant.replay(current[:71]), plant.replay(current[70:])[1:]]
+    assert np.array_equal(np.vstack(parts), whole)
+
+
+@pytest.mark.parametrize("damping", [-0.05, 0.0, 1e-7, 0.3, 3.0, 40.0])
+@pytest.mark.parametrize("stiffness", [0.0, 1e-8, 1e-4, 0.09, 1.0, 400.0])
+def test_response_of_a_block_solves_its_equation(stiffness, damping):
+    """S″ + c₁ S′ + c₀ S = 0 by differences of the exact composition: the response after 2 t is that after t, twice."""
+    time = 0.7
+    response = getattr(block_response, "py_func", block_response)
+    c0, c1 = stiffness / time**2, damping / time
+    c, s, r0, r1, r2 = response(c0, c1, time)
+    assert c + c0 * r0 == pytest.approx(1.0, rel=1e-12)
+    assert s + c1 * r0 + c0 * r1 == pytest.approx(time, rel=1e-12)
+    assert r0 + c1 * r1 + c0 * r2 == pytest.approx(time**2 / 2, rel=1e-12)
+    twice = response(c0, c1, 2 * time)
+    assert twice[0] == pytest.approx(c * c - c0 * s * s, abs=1e-12)
+    assert twice[2] == pytest.approx(r0 + c * r0 + s * s, rel=1e-11)
+
+
+SCRIPT = """
+import sys
+import numpy as np
+from plant_arms import noise, thesis_plant
+from test_kernel_paths import ARMS
+np.save(sys.argv[1], np.vstack([thesis_plant(**ARMS[n]).replay(noise(5, 40)) for n in ("base", "stribeck", "backlash")]))
+"""
+
+
+@pytest.mark.slow
+def test_jitted_kernel_equals_python(tmp_path):
+    tests = Path(__file__).resolve().parent
+    path = os.pathsep.join([str(tests.parent), str(tests), str(tests.parent.parent)])
+    environment = os.environ | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": path, "FLEXARM_CACHE": str(tmp_path)}
+    subprocess.run([sys.executable, "-c", SCRIPT, str(tmp_path / "python.npy")], env=environment, check=True)
+    jitted = np.vstack([thesis_plant(**ARMS[n]).replay(noise(5, 40)) for n in ("base", "stribeck", "backlash")])
+    assert relative(jitted, np.load(tmp_path / "python.npy")) < 1e-12
