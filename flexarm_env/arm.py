@@ -31,6 +31,7 @@ class Arm:
             arm is rigid.
         sensors: settings of each measured signal in SI units.
         effects: parameters of each effect in SI units.
+        fixed: paths of constants that no fit may move.
         columns: how foreign recordings name their columns, or nothing.
         fitted: for each fitted value ("beam.bending_stiffness") its value, low and high end of the 90 % interval and unit.
         origin: from which recordings, by which command the fit came.
@@ -43,6 +44,7 @@ class Arm:
     constants: Mapping[str, Values]
     sensors: Mapping[str, Values]
     effects: Mapping[str, Values] = field(default_factory=dict)
+    fixed: Sequence[str] = ()
     columns: Mapping[str, Any] | None = None
     fitted: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     origin: Mapping[str, Any] = field(default_factory=dict)
@@ -87,10 +89,14 @@ class Arm:
     def _check_needs(self, effect: type[Effect]) -> None:
         missing = [need for need in effect.needs if not self.has(need)]
         if missing:
-            raise InputError(f"effect '{effect.name}' needs {' and '.join(missing)}, which arm '{self.name}' does not have")
+            raise InputError(
+                f"effect '{effect.name}' needs {' and '.join(missing)}, which arm '{self.name}' does not have"
+            )
 
     def has(self, need: str) -> bool:
-        """Whether the arm has a beam, or a sensor of that name."""
+        """Whether the arm has a beam, a motor with an inertia of its own, or a sensor of that name."""
+        if need == "motor_inertia":
+            return self.constants["drive"]["motor_inertia"] > 0.0
         return need in self.constants if need == "beam" else need in self.sensors
 
     def can_have(self, name: str) -> bool:
@@ -150,7 +156,6 @@ class Arm:
             motor_inertia=drive["motor_inertia"],
             hub_inertia=self.constants["hub"]["inertia"],
             resistance=drive["resistance"] if self.input == "voltage" else 0.0,
-            motor_coulomb_share=drive["motor_coulomb_share"],
             motor_viscous_share=drive["motor_viscous_share"],
             gear_compliance=1.0 / drive["gear_stiffness"] if drive["gear_stiffness"] > 0.0 else 0.0,
             elements=int(beam.pop("elements", 0)),
@@ -181,7 +186,8 @@ class Arm:
                 if effect.port(port) is not None:
                     varies = effect.varies if port == "friction" else port in ("torque", "drag")
                     parameters = tuple(values[key] for key in effect.parameters)
-                    active.append(ActiveLaw(self.known.kinds[name, port], port, parameters, varies))
+                    share = self.constants["drive"][effect.motor_share] if effect.motor_share else 0.0
+                    active.append(ActiveLaw(self.known.kinds[name, port], port, parameters, varies, share))
         return Plant(self.structure(), active, self.known.laws, interval)
 
 
@@ -193,7 +199,9 @@ def check_bounds(path: str, value: float, parameter: Parameter) -> float:
     """
     if not parameter.low <= value <= parameter.high:
         unit = f" {parameter.unit}" if parameter.unit else ""
-        raise InputError(f"{path} = {value:g}{unit} is out of bounds: allowed are {parameter.low:g} to {parameter.high:g}{unit}")
+        raise InputError(
+            f"{path} = {value:g}{unit} is out of bounds: allowed are {parameter.low:g} to {parameter.high:g}{unit}"
+        )
     return value
 
 

@@ -17,7 +17,7 @@ from flexarm_env.parameters import DEFAULTS, SECTIONS, SENSOR, Parameter, sensor
 from flexarm_env.signals import INPUTS, SIGNALS
 from flexarm_env.units import quantity
 
-TOP = ("name", "description", "drive", "hub", "beam", "sensors", "effects", "columns", "fitted", "origin")
+TOP = ("name", "description", "fixed", "drive", "hub", "beam", "sensors", "effects", "columns", "fitted", "origin")
 LARGEST_FILE = 1_000_000
 
 
@@ -76,6 +76,7 @@ def arm_from_table(table: Mapping[str, Any], name: str, known: Catalogue) -> Arm
         input=kind,
         constants=constants,
         sensors=sensors,
+        fixed=_fixed(table.get("fixed", []), constants, sensors),
         columns=table.get("columns"),
         fitted=table.get("fitted", {}),
         origin=table.get("origin", {}),
@@ -94,6 +95,17 @@ def arm_from_table(table: Mapping[str, Any], name: str, known: Catalogue) -> Arm
         read = {key: _number(f"effects.{effect}.{key}", value, parameters[key]) for key, value in given.items()}
         arm = arm.with_effect(effect, **absent, **read)
     return arm
+
+
+def _fixed(given: Any, constants: Mapping[str, Any], sensors: Mapping[str, Any]) -> list[str]:
+    allowed = [f"{section}.{key}" for section, values in constants.items() for key in values]
+    allowed += [f"sensors.{signal}.gain" for signal in sensors]
+    if not isinstance(given, list):
+        raise InputError('fixed is not a list; write fixed = ["drive.torque_constant"]')
+    for path in given:
+        if path not in allowed:
+            raise InputError(f"unknown constant '{path}' in fixed{did_you_mean(str(path), allowed)}")
+    return [str(path) for path in given]
 
 
 def _table(table: Mapping[str, Any], key: str, default: Mapping[str, Any] | None = None) -> Mapping[str, Any]:
@@ -156,7 +168,9 @@ def _sensors(given: Mapping[str, Any], constants: Mapping[str, Mapping[str, floa
             unit = Parameter(sensor_unit(signal, key), SENSOR[key].low, SENSOR[key].high, 0.0)
             values[key] = _number(f"sensors.{signal}.{key}", value, unit)
         if bends and values["position"] > constants["beam"]["length"]:
-            raise InputError(f"sensors.{signal}.position lies beyond the beam's end at {constants['beam']['length']:g} m")
+            raise InputError(
+                f"sensors.{signal}.position lies beyond the beam's end at {constants['beam']['length']:g} m"
+            )
         sensors[signal] = values
     return sensors
 
@@ -173,7 +187,9 @@ def write_arm(arm: Arm, path: Path) -> None:
             file.write(text)
         os.replace(file.name, path)
     except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror}; name a folder that exists and can be written") from None
+        raise InputError(
+            f"cannot write {path}: {error.strerror}; name a folder that exists and can be written"
+        ) from None
 
 
 def arm_text(arm: Arm) -> str:
@@ -184,6 +200,8 @@ def arm_text(arm: Arm) -> str:
     document["name"] = arm.name
     if arm.description:
         document["description"] = arm.description
+    if arm.fixed:
+        document["fixed"] = list(arm.fixed)
     for section, values in arm.constants.items():
         table = tomlkit.table()
         if section == "drive":

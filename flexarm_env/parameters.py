@@ -36,26 +36,82 @@ class Parameter:
 TABLE = "thesis Table A.1"
 
 DRIVE = {
-    "torque_constant": Parameter("Nm/A", 1e-6, 1e4, 0.33, spread=0.15, meaning="motor torque per current, and back-EMF per speed", source="thesis App. A"),
+    "torque_constant": Parameter(
+        "Nm/A",
+        1e-6,
+        1e4,
+        0.33,
+        spread=0.15,
+        meaning="motor torque per current, and back-EMF per speed",
+        source="thesis App. A",
+    ),
     "gear_ratio": Parameter("", 1e-3, 1e4, 1.5, spread=0.0, meaning="motor turns per arm turn", source=TABLE),
-    "motor_inertia": Parameter("kg*m**2", 0.0, 1e4, 0.00193, spread=0.3, meaning="rotor and motor gear, motor side", source=TABLE),
-    "resistance": Parameter("ohm", 0.0, 1e6, 1.35, spread=0.0, meaning="armature resistance (voltage drive only)", source="thesis App. A, experiment 1"),
-    "limit": Parameter("", 0.0, 1e6, 5.0, spread=0.0, meaning="largest command, in A or V", source="thesis section 4.2"),
-    "torque_noise": Parameter("N*m", 0.0, 1e4, 0.0, spread=0.0, meaning="disturbance at the hub in each sample that no model need explain"),
-    "gear_stiffness": Parameter("N*m/rad", 0.0, 1e9, 4000.0, spread=0.0, meaning="of the touching gears, arm side; 0: motor and hub are one body"),
-    "motor_coulomb_share": Parameter("", 0.0, 1.0, 0.351, spread=0.0, meaning="part of dry friction on the motor side of the gears", source=TABLE),
-    "motor_viscous_share": Parameter("", 0.0, 1.0, 0.0177, spread=0.0, meaning="part of viscous friction on the motor side of the gears", source=TABLE),
+    "motor_inertia": Parameter(
+        "kg*m**2", 0.0, 1e4, 0.00193, spread=0.3, meaning="rotor and motor gear, motor side", source=TABLE
+    ),
+    "resistance": Parameter(
+        "ohm",
+        0.0,
+        1e6,
+        1.35,
+        spread=0.0,
+        meaning="armature resistance (voltage drive only)",
+        source="thesis App. A, experiment 1",
+    ),
+    "limit": Parameter(
+        "", 0.0, 1e6, 5.0, spread=0.0, meaning="largest command, in A or V", source="thesis section 4.2"
+    ),
+    "torque_noise": Parameter(
+        "N*m", 0.0, 1e4, 0.0, spread=0.0, meaning="disturbance at the hub in each sample that no model need explain"
+    ),
+    "gear_stiffness": Parameter(
+        "N*m/rad",
+        0.0,
+        1e9,
+        4000.0,
+        spread=0.1,
+        meaning="of the touching gears, arm side; 0: motor and hub are one body",
+    ),
+    "motor_coulomb_share": Parameter(
+        "", 0.0, 1.0, 0.351, spread=0.0, meaning="part of Coulomb friction on the motor side of the gears", source=TABLE
+    ),
+    "motor_stiction_share": Parameter(
+        "",
+        0.0,
+        1.0,
+        0.5696,
+        spread=0.0,
+        meaning="part of what static friction adds on the motor side of the gears",
+        source=TABLE,
+    ),
+    "motor_viscous_share": Parameter(
+        "",
+        0.0,
+        1.0,
+        0.0177,
+        spread=0.0,
+        meaning="part of viscous friction on the motor side of the gears",
+        source=TABLE,
+    ),
 }
 HUB = {
-    "inertia": Parameter("kg*m**2", 0.0, 1e4, 0.00129, spread=0.3, meaning="all that turns with the hub, without the beam", source=TABLE),
+    "inertia": Parameter(
+        "kg*m**2", 0.0, 1e4, 0.00129, spread=0.3, meaning="all that turns with the hub, without the beam", source=TABLE
+    ),
 }
 BEAM = {
     "elements": Parameter("", 1, 16, 1, spread=0.0, meaning="finite elements", source="thesis section 3.1"),
-    "length": Parameter("m", 1e-3, 1e2, 1.0, spread=0.0, meaning="from the hub's axis to the tip", source="thesis section 3.3"),
+    "length": Parameter(
+        "m", 1e-3, 1e2, 1.0, spread=0.0, meaning="from the hub's axis to the tip", source="thesis section 3.3"
+    ),
     "mass_per_length": Parameter("kg/m", 1e-6, 1e4, 0.42381, spread=0.15, source="thesis section 3.4"),
-    "bending_stiffness": Parameter("N*m**2", 1e-6, 1e8, 7.911324, spread=0.15, meaning="E times I", source="thesis section 3.4"),
+    "bending_stiffness": Parameter(
+        "N*m**2", 1e-6, 1e8, 7.911324, spread=0.15, meaning="E times I", source="thesis section 3.4"
+    ),
     "tip_mass": Parameter("kg", 0.0, 1e3, 0.0, spread=0.0, meaning="known mass at the tip"),
-    "tip_inertia": Parameter("kg*m**2", 0.0, 1e3, 0.0, spread=0.0, meaning="known inertia of the tip mass about the tip"),
+    "tip_inertia": Parameter(
+        "kg*m**2", 0.0, 1e3, 0.0, spread=0.0, meaning="known inertia of the tip mass about the tip"
+    ),
 }
 SECTIONS: dict[str, dict[str, Parameter]] = {"drive": DRIVE, "hub": HUB, "beam": BEAM}
 
@@ -67,6 +123,7 @@ DEFAULTS: dict[str, dict[str, float]] = {
         "torque_noise": 0.0,
         "gear_stiffness": 0.0,
         "motor_coulomb_share": 0.351,
+        "motor_stiction_share": 0.5696,
         "motor_viscous_share": 0.0177,
     },
     "hub": {},

@@ -77,7 +77,6 @@ FRICTION = (law("coulomb", COULOMB), law("stiction", STATIC - COULOMB))
 def thesis_plant(elements=1, laws=FRICTION, interval=0.005, **changes):
     constants = {
         "viscous": 1.5**2 * 0.0008 + 0.1,
-        "motor_coulomb_share": 0.351,
         "motor_viscous_share": 0.0177,
         "sensors": SIGNALS if elements else {"arm_angle": Sensor(), "motor_speed": Sensor()},
     }

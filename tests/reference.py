@@ -275,9 +275,7 @@ class ReferenceArm:
         elastic = np.einsum("...i,ij,...j", bend, self.K_beam, bend) + self.cable_stiffness * q[..., 0] ** 2
         return 0.5 * (kinetic + elastic)
 
-    def _result(
-        self, z: Array, modes: NDArray[Any], events: list[tuple[float, int]], dt: float
-    ) -> dict[str, Any]:
+    def _result(self, z: Array, modes: NDArray[Any], events: list[tuple[float, int]], dt: float) -> dict[str, Any]:
         bend = z[:, 1 : self.size]
         q = z[:, : self.size] + z[:, :1] * np.concatenate([[0.0], self.rigid[1:]])
         speed = z[:, self.size :] + z[:, self.size, None] * np.concatenate([[0.0], self.rigid[1:]])
@@ -313,9 +311,7 @@ def _first_fall(solver: Any, mode: Mode, from_rest: bool) -> tuple[int, float] |
     best: tuple[int, float] | None = None
     for row in range(len(mode.rows)):
         values = mode.rows[row] @ dense + mode.offsets[row]
-        coefficients = TO_CHEBYSHEV @ (
-            values / NODES if from_rest else values
-        )  # the root at the start divided out
+        coefficients = TO_CHEBYSHEV @ (values / NODES if from_rest else values)  # the root at the start divided out
         if coefficients[0] > np.abs(coefficients[1:]).sum():
             continue  # surely positive on the whole step
         roots = chebyshev.chebroots(chebyshev.chebtrim(coefficients))
@@ -456,9 +452,7 @@ class _Regime:
             return float(row @ self.system @ _exponential(self.system, t, y))
 
         turn = _root(rate, 0.0, width) if rate(0.0) * rate(width) < 0 else 0.0
-        if turn and margin(turn) < 0 < margin(
-            0.0
-        ):  # from rest, a dip at once is rounding: it has just broken away
+        if turn and margin(turn) < 0 < margin(0.0):  # from rest, a dip at once is rounding: it has just broken away
             return _root(margin, 0.0, turn)
         return _root(margin, turn, width) if margin(width) < 0 else None
 

@@ -24,10 +24,10 @@ HEAVY = {"torch", "stable_baselines3", "sb3_contrib", "plotly", "matplotlib", "p
 LAYERS = (
     {"errors"},
     {"units", "parameters", "signals"},
-    {"arm", "plant", "effects", "sensors"},
+    {"arm", "arm_file", "plant", "effects", "sensors"},
     {"identify", "controllers", "tasks", "render", "env"},
-    {"vector_env", "sb3"},
-    {"lab", "cli", "__main__"},
+    {"vector_env", "sb3", "pictures"},
+    {"lab", "cli", "demo", "__main__"},
     {"agents", "benchmarks"},
 )
 RANK = {name: rank for rank, layer in enumerate(LAYERS) for name in layer}

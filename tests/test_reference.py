@@ -143,9 +143,7 @@ def test_slipping_hub_obeys_the_balance_of_angular_momentum() -> None:
     np.testing.assert_allclose(momentum, momentum[0] + torque * run["time"], rtol=1e-12)
 
 
-@pytest.mark.parametrize(
-    "name", ["thesis", "payload", "no stiction", "damped beam", "cable", "coupled damping"]
-)
+@pytest.mark.parametrize("name", ["thesis", "payload", "no stiction", "damped beam", "cable", "coupled damping"])
 def test_energy_never_grows_without_current(name: str) -> None:
     arm = ARMS[name]
     start = np.concatenate([loaded(arm, 6.0), 0.5 * arm.rigid])
@@ -170,9 +168,7 @@ def test_touch_of_zero_speed_inside_a_solver_step_is_seen() -> None:
         return np.concatenate([-loaded(arm, 0.15), hub_speed * arm.rigid])
 
     touches, misses = 0.6, 0.8  # rad/s: the vibration takes the slower hub to rest, not the faster
-    while (
-        misses - touches > 1e-9
-    ):  # to a dip of 1e-9 rad/s that lasts about 1e-5 s, where a step lasts 1e-3 s
+    while misses - touches > 1e-9:  # to a dip of 1e-9 rad/s that lasts about 1e-5 s, where a step lasts 1e-3 s
         middle = 0.5 * (touches + misses)
         found = arm.simulate(coasting, DT, start=start(middle))["events"] > 0
         touches, misses = (middle, misses) if found else (touches, middle)

@@ -48,6 +48,8 @@ def _call(arguments: Sequence[str]) -> int:
     from flexarm_env.cli.app import app
 
     code = app(args=list(arguments), prog_name="flexarm", standalone_mode=False)
+    if code == STOPPED:  # Typer took Ctrl-C, and says nothing
+        return complain("stopped", STOPPED)
     return code if isinstance(code, int) else DONE
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Sequence
 
+import numpy as np
 from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from flexarm_env.identify.results import Addition, Comparison, Diagnosis, Estimate, Fit, Row
+from flexarm_env.identify.results import Addition, Comparison, Diagnosis, Estimate, Fit, Floats, Replay, Row
 from flexarm_env.pictures import words
 from flexarm_env.pictures.words import LABELS, NOTHING, PARTS, number
 
@@ -51,14 +52,9 @@ def show(out: Console, *parts: RenderableType) -> None:
 
 def comparison(result: Comparison) -> list[RenderableType]:
     """Return the tables of a comparison: by signal, by regime and band, by recording."""
-    pooled = _pooled(result.rows)
-    signals = words.signals_of([row.signal for row in pooled])
-    whole = {row.signal: row for row in pooled if row.part == "all"}
-    by_signal = [
-        [LABELS[s][0], *map(number, (whole[s].error, whole[s].free_run)), _percent(whole[s].fit), *_noise(result, s)]
-        for s in signals
-        if s in whole
-    ]
+    pooled = [row for row in result.rows if row.recording == "all"]
+    signals = words.signals_of(list(result.noise))
+    by_signal = [_whole(result, signal) for signal in signals]
     by_signal.append(["all", number(result.error), number(result.free_run), "", ""])
     found = {(row.part, row.signal): row for row in pooled}
     kinds = list(dict.fromkeys(row.part for row in pooled if row.part != "all"))
@@ -78,21 +74,25 @@ def comparison(result: Comparison) -> list[RenderableType]:
     return [*tables, *_notes(result.notes)]
 
 
-def _pooled(rows: Sequence[Row]) -> list[Row]:
-    pooled = [row for row in rows if row.recording == "all"]
-    return pooled or list(rows)
+def _whole(result: Comparison, signal: str) -> list[str]:
+    """Return the line of a signal over all recordings."""
+    runs = [r for r in result.replays if signal in r.measured]
+    measured = np.concatenate([r.measured[signal] for r in runs])
+    windows, free = (measured - np.concatenate([kind[signal] for kind in kinds]) for kinds in _kinds(runs))
+    spread = np.linalg.norm(measured - measured.mean())
+    noise = result.noise[signal]
+    errors = [number(float(np.sqrt(np.mean(off**2))) / noise) for off in (windows, free)]
+    fit = f"{100.0 * (1.0 - np.linalg.norm(free) / spread):.1f} %" if spread > 0.0 else NOTHING
+    label, unit = LABELS[signal]
+    return [label, *errors, fit, f"{number(noise, 2)} {unit}"]
+
+
+def _kinds(runs: Sequence[Replay]) -> tuple[list[dict[str, Floats]], list[dict[str, Floats]]]:
+    return [r.windows for r in runs], [r.free for r in runs]
 
 
 def _error(row: Row | None) -> str:
     return NOTHING if row is None or row.samples == 0 else number(row.error)
-
-
-def _percent(value: float) -> str:
-    return NOTHING if value != value else f"{value:.1f} %"
-
-
-def _noise(result: Comparison, signal: str) -> list[str]:
-    return [f"{number(result.noise[signal], 2)} {LABELS[signal][1]}" if signal in result.noise else NOTHING]
 
 
 def _notes(notes: Sequence[str]) -> list[RenderableType]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import RenderableType
 from rich.text import Text
 
+import flexarm_env
 from flexarm_env.arm import Arm
 from flexarm_env.cli import outputs, tables
 from flexarm_env.cli.progress import progress
@@ -25,36 +26,27 @@ if TYPE_CHECKING:
 
 def compare(arm: Arm, recordings: Sequence[Recording]) -> Comparison:
     """Compare, with a progress bar."""
-    from flexarm_env.identify.compare import compare as run
-
     with progress("comparing") as bar:
-        return run(arm, list(recordings), progress=bar)
+        return flexarm_env.compare(arm, list(recordings), progress=bar)
 
 
 def fit(arm: Arm, recordings: Sequence[Recording], seed: int) -> Fit:
     """Refit the constants, with a progress bar."""
-    from flexarm_env.identify.fit import fit as run
-
     with progress("fitting") as bar:
-        return run(arm, list(recordings), progress=bar, seed=seed)
+        return flexarm_env.fit(arm, list(recordings), progress=bar, seed=seed)
 
 
 def add(effect: str, arm: Arm, recordings: Sequence[Recording], seed: int) -> Addition:
     """Add an effect, with a progress bar."""
-    arm.known[effect]
-    arm.with_effect(effect)
-    from flexarm_env.identify.add import add as run
-
+    arm.with_effect(effect)  # refuses what cannot be added before a bar shows
     with progress(f"adding {effect}") as bar:
-        return run(effect, arm, list(recordings), progress=bar, seed=seed)
+        return flexarm_env.add(effect, arm, list(recordings), progress=bar, seed=seed)
 
 
 def diagnose(arm: Arm, recordings: Sequence[Recording], seed: int, jobs: int) -> Diagnosis:
     """Diagnose, with a progress bar."""
-    from flexarm_env.identify.diagnose import diagnose as run
-
     with progress("diagnosing") as bar:
-        return run(arm, list(recordings), progress=bar, seed=seed, jobs=jobs)
+        return flexarm_env.diagnose(arm, list(recordings), progress=bar, seed=seed, jobs=jobs)
 
 
 def own_name(spec: str) -> str:
@@ -132,7 +124,6 @@ def simulate(
     """Make a recording and write it; `settings` are duration [s], rate [Hz], seed and whether there is noise."""
     from flexarm_env.cli.inputs import read_recordings
     from flexarm_env.identify.simulate import EXPERIMENTS
-    from flexarm_env.identify.simulate import simulate as run
 
     played: str | Recording = source
     if source not in EXPERIMENTS and Path(source).exists():
@@ -141,7 +132,7 @@ def simulate(
             raise InputError(f"{source}: holds {len(found)} recordings; name one")
         played = found[0]
     with progress("simulating"):
-        made = run(arm, played, *settings)
+        made = flexarm_env.simulate(arm, played, *settings)
     made.write(save)
     reach = {signal: [float(values.min()), float(values.max())] for signal, values in made.signals.items()}
     rows = [[words.LABELS[s][0], *map(words.number, ends), words.LABELS[s][1]] for s, ends in reach.items()]

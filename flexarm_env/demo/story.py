@@ -77,7 +77,8 @@ def _steps(added: Addition) -> tuple[list[tuple[str, float]], list[tuple[str, fl
 def _resolve(added: Addition | None) -> str:
     """Say what was hidden, beside what was found."""
     effect, parameter, size, unit = HIDDEN
-    hidden = f"Hidden in the recordings, by a simulator that shares no code with this: {effect}, {parameter} = {size} {unit}."
+    made = "Hidden in the recordings, by a simulator that shares no code with this"
+    hidden = f"{made}: {effect}, {parameter} = {size} {unit}."
     found = None
     if added is not None and added.effect == effect:
         found = next((e for e in added.estimates if e.path == f"effects.{effect}.{parameter}"), None)

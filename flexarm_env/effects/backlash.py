@@ -15,12 +15,19 @@ class Backlash(Effect):
     name = "backlash"
     equation = "no torque through the gears while |θ_m − Nθ| < gap/2"
     parameters: ClassVar = {"gap": Parameter("rad", 0.0, 1.0, 0.03, null=0.0, meaning="full width, at the motor")}
-    looks_like = "at each reversal the motor runs free for a moment, then jolts; speed and strain ring where the gears meet"
+    looks_like = (
+        "at each reversal the motor runs free for a moment, then jolts; speed and strain ring where the gears meet"
+    )
     confused_with = ("gear_compliance", "input_delay")
     source = "thesis section 2.1; Nordin and Gutman, Automatica 38 (2002) 1633"
-    needs = ("motor_speed",)
+    needs = ("motor_speed", "motor_inertia")
 
     @staticmethod
     def structure(structure: Structure, gap: float) -> None:
         """Open the gears by the gap."""
         structure.gear_gap += gap
+
+    @classmethod
+    def starts(cls) -> list[dict[str, float]]:
+        """A narrow, a middling and a wide gap: the error has valleys in between."""
+        return [{"gap": gap} for gap in (0.02, 0.05)]

@@ -31,7 +31,9 @@ class Effect:
         confused_with: effects that look alike in most data.
         source: paper or textbook.
         varies: whether its friction changes while the hub turns one way.
-        needs: what the arm must have: "beam", or names of signals.
+        motor_share: the constant of the drive that says which part of its friction acts on the motor; "" for none.
+        modifies: the effect that it changes and without which it is no candidate, "" for none.
+        needs: what the arm must have: "beam", "motor_inertia", or names of signals.
         fitted: whether its parameters can be fitted (a count cannot).
     """
 
@@ -42,6 +44,8 @@ class Effect:
     confused_with: ClassVar[tuple[str, ...]] = ()
     source: ClassVar[str] = ""
     varies: ClassVar[bool] = False
+    motor_share: ClassVar[str] = ""
+    modifies: ClassVar[str] = ""
     needs: ClassVar[tuple[str, ...]] = ()
     fitted: ClassVar[bool] = True
 

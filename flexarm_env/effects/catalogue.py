@@ -81,6 +81,8 @@ def load_effect(spec: str) -> type[Effect]:
     Raises:
         InputError: for a file or class that is not there, or a class that is no effect.
     """
+    from joblib.externals import cloudpickle
+
     path_text, _, name = spec.rpartition(":")
     path = Path(path_text)
     if not path_text or not path.is_file():
@@ -95,6 +97,7 @@ def load_effect(spec: str) -> type[Effect]:
         module_spec.loader.exec_module(module)
     except Exception as error:
         raise InputError(f"{path} does not load: {type(error).__name__}: {error}") from error
+    cloudpickle.register_pickle_by_value(module)  # worker processes cannot import it by its name
     found = {effect.__name__: effect for effect in _effects_in(module)}
     if name not in found:
         raise InputError(f"{path} has no effect '{name}'{did_you_mean(name, found)}")

@@ -19,6 +19,7 @@ class Coulomb(Effect):
     looks_like = "the hub stops within a finite time and then sits still against a torque; missing torque is a step at zero speed"
     confused_with = ("stiction", "constant_torque", "asymmetric_coulomb", "position_friction")
     source = "thesis section 2.2 and Table A.1"
+    motor_share = "motor_coulomb_share"
 
     @staticmethod
     def friction(torque):

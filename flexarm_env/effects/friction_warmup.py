@@ -18,6 +18,7 @@ class FrictionWarmup(Effect):
         "drop": torque_size("how much dry friction is lost in the end", 0.05),
         "time_constant": Parameter("s", 0.1, 1e4, 5.0, meaning="τ, of warming up"),
     }
+    modifies = "coulomb"
     looks_like = "the arm stops later in the course of a recording"
     confused_with = ("coulomb",)
     source = "Bittencourt and Gunnarsson, J. Dyn. Syst. Meas. Control 134 (2012) 051013"

@@ -199,15 +199,11 @@ def _column_map(table: Mapping[str, Any]) -> ColumnMap:
 def _check_settings(settings: Mapping[str, Any]) -> None:
     delimiter, decimal = settings.get("delimiter", ","), settings.get("decimal", ".")
     if len(delimiter) != 1 or delimiter in '\r\n"#+-.eE0123456789':
-        raise InputError(
-            f"[columns]: delimiter is {delimiter!r}; write one character, such as ',' ';' or '\\t'"
-        )
+        raise InputError(f"[columns]: delimiter is {delimiter!r}; write one character, such as ',' ';' or '\\t'")
     if decimal not in (".", ","):
         raise InputError(f"[columns]: decimal is {decimal!r}; write '.' or ','")
     if decimal == delimiter:
-        raise InputError(
-            "[columns]: decimal and delimiter are both ','; set delimiter = ';' or what the file has"
-        )
+        raise InputError("[columns]: decimal and delimiter are both ','; set delimiter = ';' or what the file has")
     if settings.get("skip_rows", 0) < 0:
         raise InputError("[columns]: skip_rows is negative; write the number of lines to drop")
 

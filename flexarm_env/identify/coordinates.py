@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,7 @@ Floats = NDArray[np.float64]
 
 #: A fit sees an unbounded prior as this many typical sizes wide, so that a direction without information stays put.
 WIDEST = 30.0
+BASE_STEP, EFFECT_STEP = 1e-3, 1e-2
 SENSOR_SPREAD = {"arm_angle": 0.0, "motor_speed": 0.03, "strain_mid": 0.15, "strain_base": 0.15, "tip_deflection": 0.15}
 
 
@@ -38,6 +39,12 @@ class Coordinate:
     low: float
     high: float
 
+    def step(self, x: float) -> float:
+        """Return a step of x that a replay resolves: stick-slip makes smaller ones of an effect look like noise."""
+        if not self.scale:
+            return BASE_STEP if self.prior < 1.0 else EFFECT_STEP
+        return EFFECT_STEP * max(abs(self.value(x)) / self.scale, 0.3)
+
     def value(self, x: float) -> float:
         """Return the physical value at x, within the bounds."""
         raw = self.origin + self.scale * x if self.scale else self.origin * math.exp(min(max(x, -20.0), 20.0))
@@ -52,7 +59,7 @@ class Coordinate:
         return self.scale or self.value(x)
 
 
-def base_coordinates(arm: Arm, nominal: Arm) -> list[Coordinate]:
+def base_coordinates(arm: Arm, nominal: Arm, scales: Mapping[str, float]) -> list[Coordinate]:
     """Return what a refit of the constants moves: all with a spread, around their values in the nominal arm."""
     found = []
     for section, table in arm.constants.items():
@@ -64,23 +71,26 @@ def base_coordinates(arm: Arm, nominal: Arm) -> list[Coordinate]:
         found += _with_prior(path, nominal.value(path), SENSOR_SPREAD[signal], arm)
     for name in arm.effects:
         if name in nominal.effects:
-            found += effect_coordinates(arm, name, nominal)
+            found += effect_coordinates(arm, name, scales, nominal)
     return found
 
 
 def _with_prior(path: str, value: float, spread: float, arm: Arm) -> list[Coordinate]:
-    if not 0.0 < spread < math.inf or value == 0.0:
+    if not 0.0 < spread < math.inf or value == 0.0 or path in arm.fixed:
         return []
     parameter = arm.parameter(path)
     return [Coordinate(path, value, 0.0, spread, parameter.low, parameter.high)]
 
 
-def effect_coordinates(arm: Arm, name: str, nominal: Arm | None = None) -> list[Coordinate]:
+def effect_coordinates(
+    arm: Arm, name: str, scales: Mapping[str, float], nominal: Arm | None = None
+) -> list[Coordinate]:
     """Return the coordinates of an effect's parameters around their present values.
 
     Args:
         arm: which has the effect.
         name: of the effect.
+        scales: by unit, how much larger than typical sizes are here.
         nominal: if it has the effect as well, its values are the prior's centre.
     """
     effect = arm.known[name]
@@ -88,17 +98,20 @@ def effect_coordinates(arm: Arm, name: str, nominal: Arm | None = None) -> list[
         return []
     found = []
     for key, parameter in effect.parameters.items():
-        if key in ("arm_angle", "motor_speed", "strain_mid", "strain_base", "tip_deflection") and key not in arm.sensors:
+        if (
+            key in ("arm_angle", "motor_speed", "strain_mid", "strain_base", "tip_deflection")
+            and key not in arm.sensors
+        ):
             continue  # an offset of a sensor that the arm does not have
         known = nominal is not None and name in nominal.effects
         value = nominal.value(f"effects.{name}.{key}") if known and nominal else arm.value(f"effects.{name}.{key}")
         path = f"effects.{name}.{key}"
-        if known and 0.0 < value and parameter.spread < math.inf:
+        if known and value > 0.0 and parameter.spread < math.inf:
             found.append(Coordinate(path, value, 0.0, parameter.spread, parameter.low, parameter.high))
         elif parameter.null == math.inf or (parameter.low > 0.0 and parameter.null is None):
             found.append(Coordinate(path, value, 0.0, 3.0, parameter.low, parameter.high))
         else:
-            scale = parameter.typical if parameter.typical > 0.0 else 1.0
+            scale = (parameter.typical if parameter.typical > 0.0 else 1.0) * scales.get(parameter.unit, 1.0)
             found.append(Coordinate(path, value, scale, WIDEST, parameter.low, parameter.high))
     return found
 
@@ -106,6 +119,11 @@ def effect_coordinates(arm: Arm, name: str, nominal: Arm | None = None) -> list[
 def place_values(arm: Arm, coordinates: Sequence[Coordinate], x: Floats) -> Arm:
     """Return the arm with the values at x."""
     return arm.with_values({c.path: c.value(float(v)) for c, v in zip(coordinates, x, strict=True)})
+
+
+def steps_at(coordinates: Sequence[Coordinate], x: Floats) -> Floats:
+    """Return the steps over which differences are taken at x."""
+    return np.array([c.step(float(v)) for c, v in zip(coordinates, x, strict=True)])
 
 
 def position(arm: Arm, coordinates: Sequence[Coordinate]) -> Floats:

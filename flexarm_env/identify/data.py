@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,6 +22,8 @@ HELD_OUT = 0.35
 #: Noise assumed of a signal whose arm file states none: this share of its range.
 DEFAULT_NOISE = 2e-3
 WINDOW = 1.0
+#: Torque [Nm], range of angle [rad] and range over the root of the time [rad/√s] in recordings of the thesis's arm.
+THESIS_TORQUE, THESIS_ANGLE, THESIS_SPEED = 0.35, 2.5, 0.8
 FEWEST_SAMPLES = 50
 
 
@@ -49,17 +51,24 @@ class Data:
         signals: names in the order of the columns.
         interval: sampling time [s].
         noise: (signals,) standard deviation, SI units.
+        scales: by unit, how much larger quantities are here than in the thesis's arm, for which typical sizes are given.
     """
 
     runs: list[Run]
     signals: list[str]
     interval: float
     noise: Floats
+    scales: Mapping[str, float]
 
     @functools.cached_property
     def fitted(self) -> list[Run]:
         """The runs cut down to the part that fits see."""
         return [_cut(run, int(run.train.sum())) for run in self.runs]
+
+
+def everything(data: Data) -> Data:
+    """Return the data with nothing held out."""
+    return replace(data, runs=[replace(run, train=np.ones_like(run.train)) for run in data.runs])
 
 
 def _cut(run: Run, count: int) -> Run:
@@ -96,7 +105,36 @@ def prepare(arm: Arm, recordings: Sequence[Recording]) -> tuple[Arm, Data]:
     measured = [np.stack([r.signals[s] for s in signals], axis=1) for r in recordings]
     noise = _noise(arm, signals, measured)
     runs = [_run(r, m, signals, noise, interval) for r, m in zip(recordings, measured, strict=True)]
-    return arm, Data(runs, signals, interval, noise)
+    return arm, Data(runs, signals, interval, noise, _scales(arm, runs, signals))
+
+
+def torque_scale(arm: Arm, runs: Sequence[Run]) -> float:
+    """Return the rms of the torque that the command gives at the hub [Nm]."""
+    drive = arm.constants["drive"]
+    per_command = drive["gear_ratio"] * drive["torque_constant"]
+    if arm.input == "voltage":
+        per_command /= drive["resistance"]
+    return per_command * max(float(np.sqrt(np.mean([np.mean(run.command**2) for run in runs]))), 1e-9)
+
+
+def _scales(arm: Arm, runs: Sequence[Run], signals: Sequence[str]) -> dict[str, float]:
+    torque = torque_scale(arm, runs) / THESIS_TORQUE
+    angle = speed = 1.0
+    if "arm_angle" in signals:
+        column = signals.index("arm_angle")
+        angle = max(float(np.ptp(run.measured[:, column])) for run in runs) / THESIS_ANGLE
+        rates = [np.ptp(run.measured[:, column]) / np.sqrt(run.time[-1]) for run in runs]
+        speed = max(float(max(rates)), 1e-12) / THESIS_SPEED
+    angle = max(angle, 1e-9)
+    return {
+        "N*m": torque,
+        "N*m*s": torque / speed,
+        "N*m/rad": torque / angle,
+        "rad/N/m": 1.0 / torque,
+        "N*s**2/m**3": torque / speed**2,
+        "1/rad": 1.0 / angle,
+        "rad/s": speed,
+    }
 
 
 def _with_sensors(arm: Arm, signals: list[str]) -> Arm:
@@ -117,7 +155,7 @@ def _run(recording: Recording, measured: Floats, signals: list[str], noise: Floa
     angle, speed = _start(time, measured, signals, noise)
     beam = np.array([s.startswith("strain") or s == "tip_deflection" for s in signals])
     first = measured[: max(2, int(0.004 / interval))].mean(axis=0)
-    bent = np.where(beam & (np.abs(first) > 4.0 * noise), first, 0.0)
+    bent = np.where(beam & (np.abs(first) > 6.0 * noise), first, 0.0)
     return Run(
         name=recording.name,
         time=time,
@@ -165,7 +203,10 @@ def place(plant: Plant, run: Run) -> None:
         rows = model.output[:, bodies:size]
         shape = _first_clamped_shape(model.mass[bodies:, bodies:], model.stiffness[bodies:, bodies:])
         reading = rows @ shape
-        used = run.bent != 0.0
+        used = (run.bent != 0.0) & (reading != 0.0)
+        if not used.any():
+            plant.place(start, command=float(run.command[0]))
+            return
         start[bodies:size] = shape * (reading[used] @ run.bent[used]) / (reading[used] @ reading[used])
     plant.place(start, command=float(run.command[0]))
 

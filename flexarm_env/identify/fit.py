@@ -11,7 +11,7 @@ from flexarm_env.identify.data import prepare
 from flexarm_env.identify.origin import with_origin
 from flexarm_env.identify.problem import score
 from flexarm_env.identify.recording import Recording
-from flexarm_env.identify.refit import Progress, best_refit, estimates
+from flexarm_env.identify.refit import Progress, best_refit, estimates, with_all
 from flexarm_env.identify.results import Addition, Estimate, Fit
 from flexarm_env.identify.screen import refit_effect
 
@@ -34,10 +34,11 @@ def fit(arm: Arm, recordings: Sequence[Recording], progress: Progress | None = N
     say(0.05, "refitting the constants")
     found = best_refit(nominal, data)
     before, after = score(nominal, data), score(found.arm, data)
-    values = estimates(found, nominal)
+    final = with_all(found, nominal, data)
+    values = estimates(final, nominal)
     say(1.0, "done")
     return Fit(
-        arm=with_origin(arm, found.arm, values, recordings, "fit", seed),
+        arm=with_origin(arm, final.arm, values, recordings, "fit", seed),
         estimates=values,
         error={"nominal": before.windows, "refitted": after.windows},
         free_run={"nominal": before.free_run, "refitted": after.free_run},
@@ -71,11 +72,12 @@ def add(
     say(0.4, f"adding {effect}")
     found = refit_effect(effect, base, nominal, data)
     scores = [score(a, data) for a in (nominal, base.arm, found.arm)]
-    values = _effect_first(estimates(found, nominal), effect)
+    final = with_all(found, nominal, data)
+    values = _effect_first(estimates(final, nominal), effect)
     say(1.0, "done")
     names = ("nominal", "refitted", "final")
     return Addition(
-        arm=with_origin(arm, found.arm, values, recordings, f"add {effect}", seed),
+        arm=with_origin(arm, final.arm, values, recordings, f"add {effect}", seed),
         effect=effect,
         estimates=values,
         error={name: s.windows for name, s in zip(names, scores, strict=True)},
@@ -86,4 +88,3 @@ def add(
 
 def _effect_first(values: list[Estimate], effect: str) -> list[Estimate]:
     return sorted(values, key=lambda e: not e.path.startswith(f"effects.{effect}."))
-

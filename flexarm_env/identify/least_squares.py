@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Residual = Callable[[Floats], Floats]
 
-STEP = 1e-3
 LARGEST_STEP = 3.0
 
 
@@ -29,14 +28,14 @@ class Solution:
     jacobian: Floats
 
 
-def jacobian(residual: Residual, x: Floats, at_x: Floats, columns: range | None = None) -> Floats:
-    """Return forward differences (rows, columns) of the residual."""
+def jacobian(residual: Residual, x: Floats, at_x: Floats, steps: Floats, columns: range | None = None) -> Floats:
+    """Return forward differences (rows, columns) of the residual over steps (x,)."""
     chosen = range(len(x)) if columns is None else columns
     out = np.empty((len(at_x), len(chosen)))
     for i, k in enumerate(chosen):
         moved = x.copy()
-        moved[k] += STEP
-        out[:, i] = (residual(moved) - at_x) / STEP
+        moved[k] += steps[k]
+        out[:, i] = (residual(moved) - at_x) / steps[k]
     return np.nan_to_num(out)
 
 
@@ -50,6 +49,7 @@ def minimise(
     residual: Residual,
     x: Floats,
     prior: Floats,
+    steps: Floats,
     iterations: int,
     frozen: Floats | None = None,
     tolerance: float = 1e-4,
@@ -60,6 +60,7 @@ def minimise(
         residual: whitened residual (rows,).
         x: where to start.
         prior: standard deviation of each x around 0.
+        steps: for the differences, of each x.
         iterations: at most so many Jacobians.
         frozen: Jacobian (rows, first columns) taken over from elsewhere and not computed again.
         tolerance: relative decrease of the cost at which to stop.
@@ -72,7 +73,7 @@ def minimise(
     if frozen is not None:
         j[:, :known] = frozen
     for _ in range(iterations):
-        j[:, known:] = jacobian(residual, x, r, range(known, len(x)))
+        j[:, known:] = jacobian(residual, x, r, steps, range(known, len(x)))
         normal = j.T @ j + np.diag(prior**-2.0)
         slope = j.T @ r + x / prior**2
         before = cost

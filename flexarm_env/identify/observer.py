@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from flexarm_env.plant import layout as at
 from flexarm_env.plant.plant import Plant
 
 Floats = NDArray[np.float64]
@@ -34,6 +33,15 @@ def physical_gains(plant: Plant, noise: Floats, torque_noise: float, interval: f
     return gains
 
 
+def innovation_sigma(plant: Plant, noise: Floats, torque_noise: float, interval: float) -> Floats:
+    """Return (signals,), the standard deviation that a moving arm's innovations have if the noises are as stated."""
+    transition, process = _process(plant, 0, noise, torque_noise, interval)
+    output = plant.model.output
+    covariance = _riccati(transition, output, process, noise)
+    sigma: Floats = np.sqrt(np.diag(output @ covariance @ output.T) + noise**2)
+    return sigma
+
+
 def modal_gains(plant: Plant, physical: Floats) -> Floats:
     """Return gains (modes, 2 blocks + bodies, signals) for the kernel, from physical ones."""
     size = 2 * plant.blocks
@@ -46,7 +54,8 @@ def modal_gains(plant: Plant, physical: Floats) -> Floats:
     return gains
 
 
-def _gain(plant: Plant, mode: int, noise: Floats, torque_noise: float, interval: float) -> Floats:
+def _process(plant: Plant, mode: int, noise: Floats, torque_noise: float, interval: float) -> tuple[Floats, Floats]:
+    """Return (states, states), what a sample makes of the state, and the covariance that noise adds to it."""
     transition, push = plant.transition(mode, interval)
     model = plant.model
     size = len(model.names)
@@ -64,7 +73,12 @@ def _gain(plant: Plant, mode: int, noise: Floats, torque_noise: float, interval:
         drift = HELD_DRIFT * min(torque_noise, 1.0) * noise[0]
         process[body, body] += drift**2
     process[2 * size :, 2 * size :] += np.eye(plant.states - 2 * size) * 1e-12
-    output = model.output
+    return transition, process
+
+
+def _gain(plant: Plant, mode: int, noise: Floats, torque_noise: float, interval: float) -> Floats:
+    transition, process = _process(plant, mode, noise, torque_noise, interval)
+    output = plant.model.output
     covariance = _riccati(transition, output, process, noise)
     seen = output @ covariance @ output.T + np.diag(noise**2)
     gain: Floats = np.linalg.solve(seen, output @ covariance).T

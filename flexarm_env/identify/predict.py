@@ -6,23 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.data import WINDOW, Data, Run, place
+from flexarm_env.identify.data import WINDOW, Data, Run, place, torque_scale
 from flexarm_env.identify.observer import modal_gains, physical_gains
 from flexarm_env.plant.plant import NO_GAINS, NOT_MEASURED, Plant
 
 Floats = NDArray[np.float64]
 
 #: Torque noise assumed while estimating the states from which windows start, over the rms of the drive's torque.
-WINDOW_NOISE = 2e-3
-
-
-def torque_scale(arm: Arm, data: Data) -> float:
-    """Return the rms of the torque that the command gives at the hub [Nm]."""
-    drive = arm.constants["drive"]
-    per_command = drive["gear_ratio"] * drive["torque_constant"]
-    if arm.input == "voltage":
-        per_command /= drive["resistance"]
-    return per_command * max(float(np.sqrt(np.mean([np.mean(run.command**2) for run in data.runs]))), 1e-9)
+WINDOW_LEVELS = (1e-4, 2e-3, 2e-2)
 
 
 def replay(plant: Plant, run: Run, physical: Floats | None = None) -> Floats:
@@ -33,28 +24,43 @@ def replay(plant: Plant, run: Run, physical: Floats | None = None) -> Floats:
     return plant.replay(run.command, run.intervals, modal_gains(plant, physical), run.measured)
 
 
-def window_replay(plant: Plant, run: Run, gains: Floats, interval: float) -> Floats:
-    """Return readings replayed freely in windows of 1 s, each from the state that a nudged replay has reached."""
-    length = max(int(round(WINDOW / interval)), 10)
+def window_replay(plant: Plant, run: Run, observers: list[Floats], noise: Floats, interval: float) -> Floats:
+    """Return readings replayed freely in windows of 1 s from estimated states.
+
+    The states come from replays that differ in how much they are nudged. In each window that one counts from which the
+    window is met best: a stand-in for a smoother, which hysteresis (a hub at rest within its play) would lead astray.
+
+    Args:
+        plant: a compiled arm.
+        run: the recording.
+        observers: the kernel's gains of each replay.
+        noise: (signals,) standard deviation of the readings.
+        interval: sampling time [s].
+    """
+    length = max(round(WINDOW / interval), 10)
+    starts = range(0, len(run.command), length)
+    best = np.full(len(starts), np.inf)
     out = np.empty_like(run.measured)
-    place(plant, run)
-    count = len(run.command)
     command = plant.delayed(run.command)
-    start = 0
-    while start < count:
-        stop = min(start + length, count)
-        end = min(stop + 1, count)
-        part = slice(start, end)
-        intervals = run.intervals[part] if len(run.intervals) else run.intervals
-        state = plant.state.copy()
-        out[start:stop] = plant.play(command[part], intervals, NO_GAINS, NOT_MEASURED)[: stop - start]
-        plant.state[:] = state
-        plant.play(command[part], intervals, gains, run.measured[part])
-        start = stop
+    for gains in observers:
+        place(plant, run)
+        for w, start in enumerate(starts):
+            part = slice(start, start + length + 1)
+            intervals = run.intervals[part] if len(run.intervals) else run.intervals
+            state = plant.state.copy()
+            free = plant.play(command[part], intervals, NO_GAINS, NOT_MEASURED)[:length]
+            inside = slice(start, start + len(free))
+            error = float(np.sum(((run.measured[inside] - free) / noise) ** 2))
+            if error < best[w] or not np.isfinite(best[w]):
+                out[inside], best[w] = free, error if np.isfinite(error) else np.inf
+            plant.state[:] = state
+            plant.play(command[part], intervals, gains, run.measured[part])
     return out
 
 
-def window_gains(arm: Arm, plant: Plant, data: Data) -> Floats:
-    """Return the kernel's gains for estimating the states from which windows start."""
-    noise = max(WINDOW_NOISE * torque_scale(arm, data), arm.constants["drive"].get("torque_noise", 0.0))
-    return modal_gains(plant, physical_gains(plant, data.noise, noise, data.interval))
+def window_observers(arm: Arm, plant: Plant, data: Data) -> list[Floats]:
+    """Return the kernel's gains of the replays that estimate the states from which windows start."""
+    scale, own = torque_scale(arm, data.runs), arm.constants["drive"]["torque_noise"]
+    noises = sorted({max(level * scale, own) for level in WINDOW_LEVELS})
+    nudged = [modal_gains(plant, physical_gains(plant, data.noise, noise, data.interval)) for noise in noises]
+    return [NO_GAINS, *nudged]

@@ -182,9 +182,7 @@ def _elements(data: bytes, order: str, padded: bool = True) -> Iterator[tuple[in
 def _vector(name: str, variable: str, value: Any) -> NDArray[np.float64]:
     real = isinstance(value, np.ndarray) and value.dtype.kind in "fiu"
     if not real or not 0 < value.size == max(value.shape):
-        raise InputError(
-            f"column '{name}': variable '{variable}' is not a vector of real numbers; save it as n × 1"
-        )
+        raise InputError(f"column '{name}': variable '{variable}' is not a vector of real numbers; save it as n × 1")
     return np.array(value, dtype=np.float64).ravel()
 
 
@@ -272,9 +270,7 @@ def _places(header: Sequence[str], layout: ColumnMap) -> dict[str, Source]:
             place = texts.index(place.strip())
         twin = next((other for other in sources if sources[other].place == place), None)
         if twin:
-            raise InputError(
-                f"columns '{twin}' and '{name}': both map to column {place}; correct one of them"
-            )
+            raise InputError(f"columns '{twin}' and '{name}': both map to column {place}; correct one of them")
         sources[name] = Source(place, source.unit, source.sign, source.scale)
     return sources
 
@@ -347,9 +343,7 @@ def _slowly(
     """Yield the numbers of each row; raise InputError at the first cell that is none."""
     for name_index, name in labels.items():
         if name_index >= width:
-            raise InputError(
-                f"column '{name}': index {name_index}, but the rows have {width} cells; count from 0"
-            )
+            raise InputError(f"column '{name}': index {name_index}, but the rows have {width} cells; count from 0")
     for row, line in zip(rows, lines, strict=True):
         where = f"row {line + 1}"
         try:

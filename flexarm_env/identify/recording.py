@@ -189,8 +189,7 @@ class Recording:
         if self.reference is not None:
             columns["reference"] = self.reference
         remarks = [
-            f"# {name} = {value!r} {CONDITIONS.get(name, '')}".rstrip()
-            for name, value in self.conditions.items()
+            f"# {name} = {value!r} {CONDITIONS.get(name, '')}".rstrip() for name, value in self.conditions.items()
         ]
         header = ",".join(f"{name} [{UNITS[name]}]" for name in columns)
         rows = zip(*(map(repr, values.tolist()) for values in columns.values()), strict=True)
@@ -252,9 +251,7 @@ def _array(name: str, values: ArrayLike) -> Floats:
     return array.astype(np.float64)
 
 
-def _recording(
-    name: str, arrays: dict[str, Floats], conditions: dict[str, float], lines: Sequence[int]
-) -> Recording:
+def _recording(name: str, arrays: dict[str, Floats], conditions: dict[str, float], lines: Sequence[int]) -> Recording:
     """Return a recording of (n,) arrays in SI, by column name, after checking them.
 
     `lines` has the line of each sample in its file, for messages; it is empty where there is none.
@@ -289,9 +286,7 @@ def _check_samples(arrays: Mapping[str, Floats], lines: Sequence[int]) -> None:
     for column, values in arrays.items():
         bad = np.flatnonzero(~np.isfinite(values))
         if bad.size:
-            raise InputError(
-                f"{place(bad[0])}, column '{column}': is {values[bad[0]]}; correct it or remove the row"
-            )
+            raise InputError(f"{place(bad[0])}, column '{column}': is {values[bad[0]]}; correct it or remove the row")
     time = arrays["time"]
     back = np.flatnonzero(np.diff(time) <= 0)
     if back.size:
@@ -308,9 +303,7 @@ def _check_conditions(conditions: Mapping[str, float]) -> None:
         if not name.isidentifier() or not name.isascii():
             raise InputError(f"condition {name!r}: write its name in letters, digits and _")
         if not math.isfinite(value) or (name == "payload" and value < 0):
-            raise InputError(
-                f"condition '{name}' is {value}; write a finite number, for payload one not below 0"
-            )
+            raise InputError(f"condition '{name}' is {value}; write a finite number, for payload one not below 0")
 
 
 def _files(paths: Iterable[PathLike]) -> list[Path]:

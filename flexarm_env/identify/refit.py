@@ -9,10 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.coordinates import Coordinate, base_coordinates, effect_coordinates, place_values, position
-from flexarm_env.identify.data import Data
+from flexarm_env.identify.coordinates import (
+    Coordinate,
+    base_coordinates,
+    effect_coordinates,
+    place_values,
+    position,
+    steps_at,
+)
+from flexarm_env.identify.data import Data, everything, torque_scale
 from flexarm_env.identify.least_squares import Solution, covariance, jacobian, minimise
-from flexarm_env.identify.predict import torque_scale
 from flexarm_env.identify.problem import Problem, rms_by_run, score
 from flexarm_env.identify.results import Estimate
 
@@ -22,24 +28,28 @@ Progress = Callable[[float, str], None]
 #: Process noise of the levels that a fit goes through, over the rms of the drive's torque.
 LEVELS = (0.03, 0.003, 0.0003)
 QUANTILE_90 = 1.6449
+#: Relative standard deviation that no value beats: no model is more exact than this.
+BEST_MODEL = 0.005
 #: Length [s] of the blocks over which residuals may hang together.
 BLOCK = 0.25
 
 
 @dataclass
 class Refit:
-    """A refitted arm, its coordinates and where the fit ended."""
+    """A refitted arm, its coordinates and where the fit ended; how far it moved when the held-out part came in."""
 
     arm: Arm
     coordinates: list[Coordinate]
     solution: Solution
     problem: Problem
+    moved: Floats | None = None
 
 
-def free_coordinates(arm: Arm, nominal: Arm) -> list[Coordinate]:
+def free_coordinates(arm: Arm, nominal: Arm, data: Data) -> list[Coordinate]:
     """Return everything that a fit of the arm moves: constants first, then effects that the nominal arm lacks."""
     added = [name for name in arm.effects if name not in nominal.effects]
-    return base_coordinates(arm, nominal) + [c for name in added for c in effect_coordinates(arm, name)]
+    constants = base_coordinates(arm, nominal, data.scales)
+    return constants + [c for name in added for c in effect_coordinates(arm, name, data.scales)]
 
 
 def refit(
@@ -55,19 +65,27 @@ def refit(
         iterations: for each level.
         last: whether to end with the arm's own torque noise (none: free replays).
     """
-    scale = torque_scale(arm, data)
-    noises = [level * scale for level in levels]
+    scale, own = torque_scale(arm, data.runs), arm.constants["drive"]["torque_noise"]
+    noises = [level * scale for level in levels if level * scale > own]
     if last:  # twice, since the first pass weighs the signals by errors that it then removes
-        noises += [arm.constants["drive"]["torque_noise"]] * 2
-    coordinates = free_coordinates(arm, nominal)
+        noises += [own] * 2
+    coordinates = free_coordinates(arm, nominal, data)
     x = position(arm, coordinates)
     prior = np.array([c.prior for c in coordinates])
     for noise in noises:
         problem = Problem(arm, data, coordinates, noise, np.ones((len(data.runs), len(data.signals))))
         problem.sigma = rms_by_run(problem.errors_of(place_values(arm, coordinates, x)), data)
-        solution = minimise(problem.residual, x, prior, iterations)
+        solution = minimise(problem.residual, x, prior, steps_at(coordinates, x), iterations)
         x = solution.x
     return Refit(place_values(arm, coordinates, x), coordinates, solution, problem)
+
+
+def as_it_is(arm: Arm, data: Data) -> Refit:
+    """Return an arm as if it had been refitted and nothing had moved."""
+    coordinates = free_coordinates(arm, arm, data)
+    problem = Problem(arm, data, coordinates, 0.0, np.ones((len(data.runs), len(data.signals))))
+    x = position(arm, coordinates)
+    return Refit(arm, coordinates, Solution(x, np.inf, np.zeros(0), np.zeros((0, len(x)))), problem)
 
 
 def best_refit(nominal: Arm, data: Data) -> Refit:
@@ -86,9 +104,15 @@ def polish(found: Refit, nominal: Arm, data: Data) -> Refit:
     added = {name: found.arm.effects[name] for name in found.arm.effects if name not in nominal.effects}
     start = replace(nominal, effects={**nominal.effects, **added})
     other = refit(start, nominal, data)
-    if score(other.arm, data, held_out=False).windows < score(found.arm, data, held_out=False).windows:
-        return other
-    return found
+    errors = [score(one.arm, data, held_out=False) for one in (other, found)]
+    better = errors[0].windows * errors[0].free_run < errors[1].windows * errors[1].free_run
+    return other if better else found
+
+
+def with_all(found: Refit, nominal: Arm, data: Data) -> Refit:
+    """Return the refit gone on with on all of the data: what is kept once nothing is to be judged any more."""
+    whole = refit(found.arm, nominal, everything(data), ())
+    return replace(whole, moved=whole.solution.x - position(found.arm, whole.coordinates))
 
 
 def at_solution(found: Refit) -> Refit:
@@ -97,17 +121,29 @@ def at_solution(found: Refit) -> Refit:
     x = found.solution.x
     problem.sigma = rms_by_run(problem.errors_of(found.arm), problem.data)
     residual = problem.residual(x)
-    solution = replace(found.solution, residual=residual, jacobian=jacobian(problem.residual, x, residual))
+    solution = replace(
+        found.solution,
+        residual=residual,
+        jacobian=jacobian(problem.residual, x, residual, steps_at(found.coordinates, x)),
+    )
     return replace(found, solution=solution)
 
 
 def estimates(found: Refit, nominal: Arm) -> list[Estimate]:
-    """Return every fitted value with its 90 % interval."""
+    """Return every fitted value with its 90 % interval.
+
+    Scatter of the fit (sandwich), how far the value moved when the held-out part came in, and what no model beats.
+    """
     found = at_solution(found)
     prior = np.array([c.prior for c in found.coordinates])
     block = max(int(BLOCK / found.problem.data.interval), 1) * len(found.problem.data.signals)
     spread = covariance(found.solution.jacobian, found.solution.residual, prior, block)
-    sigma = np.sqrt(np.maximum(np.diag(spread), 0.0))
+    variance = np.maximum(np.diag(spread), 0.0) + (0.0 if found.moved is None else found.moved**2)
+    least = [
+        BEST_MODEL * (abs(c.value(float(x))) / c.scale if c.scale else 1.0)
+        for c, x in zip(found.coordinates, found.solution.x, strict=True)
+    ]
+    sigma = np.sqrt(variance + np.square(least))
     out = []
     for c, x, s in zip(found.coordinates, found.solution.x, sigma, strict=True):
         low, high = sorted((c.value(float(x - QUANTILE_90 * s)), c.value(float(x + QUANTILE_90 * s))))

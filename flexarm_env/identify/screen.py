@@ -9,19 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.coordinates import effect_coordinates, place_values, position
-from flexarm_env.identify.data import Data
+from flexarm_env.identify.coordinates import effect_coordinates, place_values, position, steps_at
+from flexarm_env.identify.data import Data, torque_scale
 from flexarm_env.identify.least_squares import jacobian, minimise
-from flexarm_env.identify.predict import torque_scale
 from flexarm_env.identify.problem import Problem, rms_by_run
-from flexarm_env.identify.refit import Refit, polish, refit
+from flexarm_env.identify.refit import Refit, as_it_is, polish, refit
 
 Floats = NDArray[np.float64]
 
-#: Starts that are followed up for each effect.
-STARTS_KEPT = 2
-#: The signature's own estimate of an effect's size is trusted within these factors.
-SMALLEST_FACTOR, LARGEST_FACTOR = 0.1, 4.0
+#: Share of the residual that an effect must explain by its signature to be fitted at all.
+LEAST_EXPLAINED = 0.005
+#: Starts whose size is scanned, and the factors.
+STARTS_SCANNED = 2
+SIZES = (0.15, 0.4, 0.75, 1.2, 2.5)
 ITERATIONS = 4
 #: Process noise at which candidates are screened, over the rms of the drive's torque.
 SCREENING_LEVEL = 0.01
@@ -61,12 +61,14 @@ class Trial:
 
 def screening_base(found: Refit, data: Data) -> Base:
     """Return the refitted arm's residual and Jacobian at the level at which candidates are screened."""
-    torque_noise = max(SCREENING_LEVEL * torque_scale(found.arm, data), found.arm.constants["drive"]["torque_noise"])
+    torque_noise = max(
+        SCREENING_LEVEL * torque_scale(found.arm, data.runs), found.arm.constants["drive"]["torque_noise"]
+    )
     problem = Problem(found.arm, data, found.coordinates, torque_noise, np.ones((len(data.runs), len(data.signals))))
     problem.sigma = rms_by_run(problem.errors_of(found.arm), data)
     x = position(found.arm, found.coordinates)
     residual = problem.residual(x)
-    slopes = jacobian(problem.residual, x, residual)
+    slopes = jacobian(problem.residual, x, residual, steps_at(found.coordinates, x))
     prior = np.diag([1.0 / c.prior for c in found.coordinates])
     orthonormal = np.linalg.qr(np.vstack([slopes, prior]))[0][: len(residual)]
     return Base(problem, x, residual, slopes, orthonormal)
@@ -75,48 +77,70 @@ def screening_base(found: Refit, data: Data) -> Base:
 def candidates(arm: Arm) -> list[str]:
     """Return the effects that an arm could lack."""
     fine = arm.constants.get("beam", {}).get("elements", 0.0) >= 3
-    return [n for n in arm.known if n not in arm.effects and arm.can_have(n) and not (n == "higher_modes" and fine)]
+    lacking = [n for n in arm.known if n not in arm.effects and arm.can_have(n) and not (n == "higher_modes" and fine)]
+    return [n for n in lacking if not arm.known[n].modifies or arm.known[n].modifies in arm.effects]
 
 
 def signatures(base: Base, effect: str) -> list[Signature]:
-    """Return the most promising starts of an effect, best first, by the share of the residual that each explains."""
-    found = []
-    for start in base.problem.arm.known[effect].starts():
-        found += [s for s in (_signature(base, effect, values) for values in _by_sensor(base, effect, start)) if s]
-    found.sort(key=lambda s: -s.explained)
-    return found[:STARTS_KEPT]
+    """Return the most promising start of an effect, if it explains anything of the residual.
+
+    The effect's own starts are ranked by a finite secant; the best are scanned over sizes, since the error of a gap or a
+    delay has a narrow valley that no slope finds from outside.
+    """
+    starts = [v for start in base.problem.arm.known[effect].starts() for v in _by_sensor(base, effect, start)]
+    secants = sorted((_secant(base, effect, start) for start in starts), key=lambda s: -s.explained)
+    scanned = [_at_size(base, s, factor) for s in secants[:STARTS_SCANNED] for factor in _factors(base, s)]
+    best = max(scanned, key=lambda s: s.explained)
+    return [best] if best.explained > LEAST_EXPLAINED else []
 
 
 def _by_sensor(base: Base, effect: str, start: dict[str, float]) -> list[dict[str, float]]:
-    known = base.problem.arm.known[effect]
-    if effect != "sensor_offset":
-        return [start]
-    sensors = base.problem.arm.sensors
-    return [{key: (p.typical * 0.3 if key == signal else 0.0) for key, p in known.parameters.items()} for signal in sensors]
+    """Return a start in the scales of the data; for offsets, one for each sensor."""
+    known, data = base.problem.arm.known[effect], base.problem.data
+    if effect == "sensor_offset":
+        noise = dict(zip(data.signals, data.noise, strict=True))
+        return [{key: (float(noise[key]) if key == signal else 0.0) for key in known.parameters} for signal in noise]
+    values = {key: value * data.scales.get(known.parameters[key].unit, 1.0) for key, value in start.items()}
+    return [{key: min(max(v, known.parameters[key].low), known.parameters[key].high) for key, v in values.items()}]
 
 
-def _signature(base: Base, effect: str, start: dict[str, float]) -> Signature | None:
-    known = base.problem.arm.known[effect]
-    arm = base.problem.arm.with_effect(effect, **start)
-    change = base.problem.residual_of(arm) - base.residual
-    change = change - base.orthonormal @ (base.orthonormal.T @ change)
-    left = base.residual - base.orthonormal @ (base.orthonormal.T @ base.residual)
-    power = float(change @ change)
-    if power <= 1e-12 * float(left @ left):
-        return None
-    factor = -float(change @ left) / power
-    size = known.size()
-    parameter = known.parameters[size]
-    if factor < 0.0 and parameter.low >= 0.0:
+def _unexplained(base: Base, residual: Floats) -> Floats:
+    """Return the residual without what the constants could explain."""
+    left: Floats = residual - base.orthonormal @ (base.orthonormal.T @ residual)
+    return left
+
+
+def _secant(base: Base, effect: str, start: dict[str, float]) -> Signature:
+    """What an effect would explain if its change of the residual grew in proportion to its size."""
+    change = _unexplained(base, base.problem.residual_of(base.problem.arm.with_effect(effect, **start)) - base.residual)
+    left = _unexplained(base, base.residual)
+    power, total = float(change @ change), float(left @ left)
+    if power <= 1e-12 * total:
         return Signature(effect, start, 0.0)
-    explained = factor**2 * power / float(left @ left)
-    values = dict(start)
-    if parameter.null == 0.0 and known.fitted:
-        scale = float(np.sign(factor) * np.clip(abs(factor), SMALLEST_FACTOR, LARGEST_FACTOR))
-        for key, p in known.parameters.items():
-            if p.null == 0.0:
-                values[key] = min(max(values[key] * scale, p.low), p.high)
-    return Signature(effect, values, explained)
+    along = float(change @ left)
+    if along > 0.0 and "phase" in start:  # the sine wants to be turned round
+        start = {**start, "phase": start["phase"] - float(np.copysign(np.pi, start["phase"]))}
+    return Signature(effect, start, along**2 / power / total)
+
+
+def _factors(base: Base, signature: Signature) -> tuple[float, ...]:
+    """Factors of an effect's size that are scanned: of both signs where it has two, one where it cannot be scaled."""
+    effect = base.problem.arm.known[signature.effect]
+    parameter = effect.parameters[effect.size()]
+    if not effect.fitted:
+        return (1.0,)
+    return (*SIZES, *(-size for size in SIZES)) if parameter.low < 0.0 else SIZES
+
+
+def _at_size(base: Base, signature: Signature, factor: float) -> Signature:
+    effect = base.problem.arm.known[signature.effect]
+    values = dict(signature.start)
+    for key, p in effect.parameters.items():
+        if p.null is not None:
+            values[key] = min(max(values[key] * factor, p.low), p.high)
+    left = _unexplained(base, base.problem.residual_of(base.problem.arm.with_effect(signature.effect, **values)))
+    before = _unexplained(base, base.residual)
+    return Signature(signature.effect, values, 1.0 - float(left @ left) / float(before @ before))
 
 
 def attempt(base: Base, signature: Signature | None) -> Trial:
@@ -125,12 +149,13 @@ def attempt(base: Base, signature: Signature | None) -> Trial:
     name = "" if signature is None else signature.effect
     if signature is not None:
         arm = arm.with_effect(name, **signature.start)
-    added = effect_coordinates(arm, name) if name else []
+    added = effect_coordinates(arm, name, base.problem.data.scales) if name else []
     coordinates = [*base.problem.coordinates, *added]
     problem = Problem(arm, base.problem.data, coordinates, base.problem.torque_noise, base.problem.sigma)
     prior = np.array([c.prior for c in coordinates])
     x = np.concatenate([base.x, position(arm, added)])
-    solution = minimise(problem.residual, x, prior, ITERATIONS, frozen=base.jacobian, tolerance=1e-3)
+    steps = steps_at(coordinates, x)
+    solution = minimise(problem.residual, x, prior, steps, ITERATIONS, frozen=base.jacobian, tolerance=1e-3)
     best = place_values(arm, coordinates, solution.x)
     held = Problem(best, base.problem.data, [], base.problem.torque_noise, base.problem.sigma, held_out=True)
     r = held.residual_of(best)
@@ -139,12 +164,9 @@ def attempt(base: Base, signature: Signature | None) -> Trial:
 
 def refit_effect(effect: str, base: Refit, nominal: Arm, data: Data) -> Refit:
     """Return the refitted arm with an effect added and everything fitted again."""
-    screening = screening_base(base, data)
-    found = signatures(screening, effect)
-    if found:
-        start = min((attempt(screening, signature) for signature in found), key=lambda trial: trial.cost).arm
-    else:
-        start = base.arm.with_effect(effect)
+    bases = [screening_base(start, data) for start in (base, as_it_is(nominal, data))]
+    trials = [attempt(b, signature) for b in bases for signature in signatures(b, effect)]
+    start = min(trials, key=lambda trial: trial.held_out).arm if trials else base.arm.with_effect(effect)
     return polish(refit(start, nominal, data, CANDIDATE_LEVELS), nominal, data)
 
 

@@ -60,8 +60,8 @@ def simulate(
     Args:
         arm: with its sensors' noise, steps and dead times.
         input: "pulse" (open loop: 3 A from 0.5 to 1.0 s, then pulses of random size and time), "square" (PD to ±50° at
-            0.2 Hz), "sweep" (slow PD motion and tones of random phase in the command), or a recording, or the path of one,
-            whose commands are played. Sizes are for a drive of 5 A and scale with the arm's limit.
+            0.2 Hz), "sweep" (slow PD motion and tones of random phase in the command), or a recording, or the path of
+            one, whose commands are played. Sizes are for a drive of 5 A and scale with the arm's limit.
         duration: [s]; a recording brings its own.
         rate: samples per second [Hz]; a recording brings its own.
         seed: of noise, pulses and phases.

@@ -176,12 +176,13 @@ def _ranking(axes: Axes, candidates: Sequence[Candidate]) -> None:
     axes.grid(axis="y", visible=False)
     for place, candidate in enumerate(candidates):
         if candidate.accepted and candidate.estimates:
+            inside = gains[place] > 55.0
             axes.annotate(
-                words.parameters_of(candidate.estimates).replace(" (", "\n("),
-                (1.5, place),
+                words.parameters_of(candidate.estimates).replace("), ", ")\n").replace(" (", "\n("),
+                (1.5 if inside else gains[place] + 1.5, place),
                 va="center",
-                color="white",
-                fontsize=8,
+                color="white" if inside else INK,
+                fontsize=8 if len(candidate.estimates) == 1 else 6,
             )
 
 

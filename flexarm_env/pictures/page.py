@@ -23,7 +23,8 @@ body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 1100px; mar
 h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2.2rem; }
 .verdict { font-size: 1.15rem; border-left: 5px solid #0072b2; padding: .4rem 0 .4rem 1rem; }
 table { border-collapse: collapse; } th, td { padding: .2rem .9rem .2rem 0; text-align: left; }
-th { font-weight: 600; border-bottom: 1px solid #999; } th.n, td.n { text-align: right; font-variant-numeric: tabular-nums; }
+th { font-weight: 600; border-bottom: 1px solid #999; }
+th.n, td.n { text-align: right; font-variant-numeric: tabular-nums; }
 footer { margin-top: 3rem; color: #666; font-size: .85rem; }
 """
 _TEMPLATE = "plotly_white"

@@ -122,7 +122,8 @@ def _missing(diagnosis: Diagnosis) -> str:
     named = {c.effect: parameters_of(c.estimates) for c in accepted(diagnosis)}
     parts = [f"{name}, {named[name]}" if named.get(name) else name for name in diagnosis.effects]
     falls = arrows(diagnosis.error, diagnosis.effects)
-    return f"Missing: {'; '.join(parts)}. With it the held-out error falls {falls} × the noise."
+    them = "it" if len(diagnosis.effects) == 1 else "them"
+    return f"Missing: {'; '.join(parts)}. With {them} the held-out error falls {falls} × the noise."
 
 
 def _doubt(diagnosis: Diagnosis) -> str:

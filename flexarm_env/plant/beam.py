@@ -69,7 +69,7 @@ class Beam:
         return element, x / span - element, span
 
     def deflection_row(self, x: float, absolute: bool) -> Matrix:
-        """Row that gives the deflection [m] at x, of the beam's line from the hub's or (absolute) from the fixed one."""
+        """Row that gives the deflection [m] at x, from the hub's line or (absolute) from the fixed one."""
         element, u, a = self._local(x)
         shape = [1 - 3 * u**2 + 2 * u**3, a * (u - 2 * u**2 + u**3), 3 * u**2 - 2 * u**3, a * (u**3 - u**2)]
         return self._row(element, shape, x if absolute else 0.0)

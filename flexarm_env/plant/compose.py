@@ -3,9 +3,9 @@
 The text of the kernel and of every law goes into one generated module, named by the hash of that text: numba caches it
 across processes, and a change in any of the sources gives another module, never yesterday's physics.
 
-An index in a kernel counts from the front. numba would give a negative one Python's meaning, with a test and a selection
-at each access (30 % of the time of a step); the generated module makes every computed index unsigned, which it takes as
-it is.
+An index in a kernel counts from the front. numba would give a negative one Python's meaning, with a test and a
+selection at each access (30 % of the time of a step); the generated module makes every computed index unsigned, which
+it takes as it is.
 """
 
 from __future__ import annotations
@@ -44,15 +44,24 @@ TYPES = {
     "Samples": "float64[:, ::1]",
     "Gains": "float64[:, :, ::1]",
 }
-OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy"}
-NO_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+OPTIONS: dict[str, bool | str] = {"cache": True, "nogil": True, "error_model": "numpy"}
+NO_WRAPPERS: dict[str, bool | str] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 #: Kernels that Python calls. The others get no wrapper to be called by: half the work of compiling a small one.
-ENTRANCES = ("scratch_size", "prepare", "respond", "place_at", "to_physical", "measure", "let_through", "control_step")
-ENTRANCES += ("replay",)
+ENTRANCES = (
+    "scratch_size",
+    "prepare",
+    "respond",
+    "place_at",
+    "to_physical",
+    "measure",
+    "let_through",
+    "control_step",
+    "replay",
+)
 
 #: The kernel, each file after those that it calls.
-FILES = ("propagate.py", "stick_slip.py", "varying.py", "glide.py", "events.py", "kernel.py")
+FILES = ("propagate.py", "crossing.py", "stick_slip.py", "varying.py", "slide.py", "glide.py", "events.py", "kernel.py")
 
 Law = tuple[str, str, Callable[..., float], tuple[str, ...]]  # port, effect, function, names of its parameters
 
@@ -108,12 +117,12 @@ class _Compiled(ast.NodeTransformer):
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
         """Replace the bare decorator of a kernel."""
-        self.generic_visit(node)
         decorator = node.decorator_list[0]
         options = list(decorator.keywords) if isinstance(decorator, ast.Call) else []
         given = [option.arg for option in options]
         if "cache" in given:  # a law, which takes its types from the kernel that calls it
             return node
+        self.generic_visit(node)
         signature = [_signature(node)]  # which takes the annotations off, too
         every = OPTIONS if node.name in ENTRANCES else OPTIONS | NO_WRAPPERS
         options += [ast.keyword(name, ast.Constant(value)) for name, value in every.items()]
@@ -178,11 +187,12 @@ def _module(text: str) -> ModuleType:
     if not path.exists():
         _write_whole(path, ast.unparse(_Compiled().visit(ast.parse(text))))
     spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None and spec.loader is not None
+    assert spec is not None
+    assert spec.loader is not None
     module: Any = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
     spec.loader.exec_module(module)
-    return module  # type: ignore[no-any-return]
+    return module
 
 
 def _write_whole(path: Path, text: str) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from numba import njit
 
+from flexarm_env.plant.crossing import amplitudes, curvature_bound, first_crossing, rate_of, value_at
 from flexarm_env.plant.layout import (
     BLOCKS,
     BODIES,
@@ -17,6 +18,8 @@ from flexarm_env.plant.layout import (
     HOLD,
     HOLD_WEIGHT,
     HUB_DIRECTION,
+    MESH,
+    MESH_WEIGHT,
     SPEED,
     SPEED_WEIGHT,
     VARYING,
@@ -25,7 +28,7 @@ from flexarm_env.plant.layout import (
     Numbers,
     Places,
 )
-from flexarm_env.plant.propagate import amplitudes, curvature_bound, dot, first_crossing, rate_of, value_at
+from flexarm_env.plant.propagate import dot
 from flexarm_env.plant.stick_slip import applied_offset, is_stuck, record, rubs, static_budget
 
 GEAR_OPEN = 4
@@ -74,7 +77,11 @@ def look_at_gears(
     d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, trial: int, force: int, size: int,
     start: float, end: float, side: float, best: float,
 ) -> float:  # fmt: skip
-    """Return when gears that touch on `side` part, or open gears meet there; else `best`."""
+    """Return when gears that touch on `side` part, or open gears meet there; else `best`.
+
+    Teeth push and never pull: they part when their torque, damping included, falls to zero, and push again when it
+    rises, or when they meet anew.
+    """
     closed = s[GEAR_SIDE] == side
     if not closed and not mode & GEAR_OPEN:
         return best
@@ -83,12 +90,18 @@ def look_at_gears(
         held += s[HELD_MOTOR]
     if is_stuck(mode, 0):
         held -= s[HELD_HUB]
-    sign = side if closed else -side
-    offset = sign * held + (-0.5 if closed else 0.5) * d[GAP]
     here = record(n, mode)
+    edge = side * held - 0.5 * d[GAP]
+    row, weight, sign = here + n[MESH], here + n[MESH_WEIGHT], side
+    if not closed:
+        overlap = side * dot(d, here + n[WINDUP], s, HEADER, 2 * n[BLOCKS]) + edge
+        sign = -side
+        if overlap <= 0.0:
+            row, weight = here + n[WINDUP], here + n[WINDUP_WEIGHT]
     return look(
-        d, n, mode, here + n[WINDUP], here + n[WINDUP_WEIGHT], sign, offset, 0.0, 0.0, s, w, trial, force, size, start, end, best
-    )
+        d, n, mode, row, weight, sign, edge if closed else -edge, 0.0, 0.0,
+        s, w, trial, force, size, start, end, best,
+    )  # fmt: skip
 
 
 @njit

@@ -6,6 +6,7 @@ import math
 
 from numba import njit
 
+from flexarm_env.plant.crossing import stray
 from flexarm_env.plant.layout import (
     BLOCKS,
     BODIES,
@@ -53,20 +54,9 @@ from flexarm_env.plant.layout import (
     Places,
 )
 from flexarm_env.plant.propagate import RESPONSE, respond
+from flexarm_env.plant.slide import DEPTH, prepare_slide, slide_table, slides
 from flexarm_env.plant.stick_slip import effect_torque, friction_budget, is_stuck, record, rubs
 from flexarm_env.plant.varying import reach
-
-
-@njit
-def stray(c0: float, c1: float, length: float) -> float:
-    """Return how far a block's part of a row strays from its chord over a length of time, per bound of its curvature.
-
-    Whichever is less: what that bound allows, or, for a fast block, twice the size of its vibration.
-    """
-    largest = 0.125 * length * length
-    if c0 > 0.0:
-        largest = min(largest, 2.0 * ((math.sqrt(c0) + abs(c1)) / c0) ** 2)
-    return largest * math.exp(max(-c1, 0.0) * length)
 
 
 @njit
@@ -100,17 +90,22 @@ def prepare(d: Numbers, n: Places) -> None:
             length, table = d[EARLY_LENGTH + slot], here + n[RESPONSES] + 2 * slot * RESPONSE * blocks
             respond(d, here + n[C0], here + n[C1], blocks, 0.5 * length, d, table)
             respond(d, here + n[C0], here + n[C1], blocks, length, d, table + RESPONSE * blocks)
-            if n[VARYING]:
+            if n[VARYING] and n[POINTS]:
                 size = (2 * n[BODIES] + n[POINTS]) * 3 * (n[BODIES] + n[POINTS])
                 for half in range(2):
                     place = here + n[REACH] + (2 * slot + half) * size
                     reach(d, n, mode, d, table + half * RESPONSE * blocks, d, place)
+            if slides(n) and length > 0.0:
+                for level in range(DEPTH + 1 if n[VARYING] else 1):
+                    prepare_slide(d, n, mode, length * 0.5**level, d, slide_table(n, mode, slot, level))
             prepare_glide(d, n, mode, length, table + RESPONSE * blocks, here + n[GLIDE] + slot * blocks * GLIDE_SIZE)
 
 
 @njit(forceinline=True)
-def limits(d: Numbers, n: Places, s: Numbers, here: int, stuck: bool, command: float, torque: float) -> tuple[float, float, float, float]:
-    """Return (torque on the hub, offset, low, high): no event happens while the row on z plus offset stays between the two."""
+def limits(
+    d: Numbers, n: Places, s: Numbers, here: int, stuck: bool, command: float, torque: float
+) -> tuple[float, float, float, float]:
+    """Return (torque on the hub, offset, low, high): no event while the row on z plus offset stays between the two."""
     direction, held = s[HUB_DIRECTION], s[HELD_HUB]
     if stuck:
         row = here + n[HOLD_DRIVERS]
@@ -127,8 +122,8 @@ def limits(d: Numbers, n: Places, s: Numbers, here: int, stuck: bool, command: f
 def glide(d: Numbers, n: Places, s: Numbers, command: float, length: float, slot: int, w: Numbers) -> bool:
     """Move the arm on by a whole tabulated substep and return True, if it is sure that no event falls in it.
 
-    x = ż = (q + f₁, f₂ − c₀ p − c₁ q) moves as z would without a force, and its size bounds how far the row that tells of
-    events strays from its chord.
+    x = ż = (q + f₁, f₂ − c₀ p − c₁ q) moves as z would without a force, and its size bounds how far the row that
+    tells of events strays from its chord.
     """
     mode = int(s[MODE]) & 1
     here = record(n, mode)
@@ -138,8 +133,9 @@ def glide(d: Numbers, n: Places, s: Numbers, command: float, length: float, slot
     before, after, bend = offset, offset, 0.0
     at = here + n[GLIDE] + slot * n[BLOCKS] * GLIDE_SIZE
     for k in range(n[BLOCKS]):
-        f1 = d[at + G_COMMAND] * command + d[at + G_HUB] * torque + d[at + G_ONE] + d[at + G_HELD] * held
-        f2 = d[at + G_COMMAND + 1] * command + d[at + G_HUB + 1] * torque + d[at + G_ONE + 1] + d[at + G_HELD + 1] * held
+        f1 = d[at + G_COMMAND] * command + d[at + G_HUB] * torque
+        f2 = d[at + G_COMMAND + 1] * command + d[at + G_HUB + 1] * torque
+        f1, f2 = f1 + (d[at + G_ONE] + d[at + G_HELD] * held), f2 + (d[at + G_ONE + 1] + d[at + G_HELD + 1] * held)
         p, q = s[HEADER + 2 * k], s[HEADER + 2 * k + 1]
         a, u, v = d[at + G_C0], d[at + G_ROW], d[at + G_ROW + 1]
         x, y = q + f1, f2 - a * p - d[at + G_C1] * q

@@ -40,6 +40,7 @@ from flexarm_env.plant.layout import (
     SPEED,
     STATES,
     TIME,
+    TORQUE_LAWS,
     VARYING,
     W_HELD_HUB,
     W_HELD_MOTOR,
@@ -53,8 +54,10 @@ from flexarm_env.plant.propagate import (
     RESPONSE,
     advance,
     dot,
+    inlined_dot,
     respond,
 )
+from flexarm_env.plant.slide import DEPTH, prepare_slide, slide, slide_table, table_size
 from flexarm_env.plant.stick_slip import (
     enter,
     evaluate_forces,
@@ -74,10 +77,16 @@ RUN_AWAY = 1e9
 
 
 @njit
+def substep_scratch(n: Places) -> int:
+    """How many numbers of scratch a substep needs."""
+    count = n[BODIES] + n[POINTS]
+    return 26 * n[BLOCKS] + n[STATES] + (14 + 12 * count) * count + 64
+
+
+@njit
 def scratch_size(n: Places) -> int:
     """How many numbers of scratch the kernel needs."""
-    count = n[BODIES] + n[POINTS]
-    return 26 * n[BLOCKS] + n[STATES] + (14 + 12 * count) * count + 8
+    return substep_scratch(n) + (table_size(n) if n[VARYING] else 0)
 
 
 @njit
@@ -179,14 +188,58 @@ def let_through(d: Numbers, n: Places, s: Numbers, command: float) -> float:
 
 
 @njit
+def rests(n: Places, mode: int) -> bool:
+    """Whether the hub of an arm of one body is held and no force varies for that."""
+    return n[BODIES] == 1 and mode == 1 and n[n[TORQUE_LAWS]] == 0
+
+
+@njit
+def walk(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int, w: Numbers) -> None:
+    """Move the arm on by t [s] in slides, halved where the force varies fast or an event may fall in, else substeps."""
+    whole, done, level = 1 << DEPTH, 0, 0
+    own, own_mode, own_level = substep_scratch(n), UNTABULATED, 0
+    while done < whole:
+        mode, part = int(s[MODE]), whole >> level
+        length = t * 0.5**level
+        if slot >= 0 and level == 0 and rests(n, mode):
+            moved = glide(d, n, s, command, length, slot, w)
+        elif slot >= 0:
+            moved = slide(d, n, s, command, length, level == DEPTH, d, slide_table(n, mode, slot, level), w)
+        else:
+            if own_mode != mode or own_level != level:
+                prepare_slide(d, n, mode, length, w, own)
+                own_mode, own_level = mode, level
+            moved = slide(d, n, s, command, length, level == DEPTH, w, own, w)
+        if not moved and level < DEPTH:
+            level += 1
+            continue
+        if not moved:
+            substep(d, n, s, command, length, UNTABULATED, w)
+        done += part
+        if level > 0 and done % (2 * part) == 0:
+            level -= 1
+
+
+@njit
+def move(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int, w: Numbers) -> None:
+    """Move the arm on by t [s] under a held command; `slot` names the tables for exactly t."""
+    if n[VARYING] and not n[POINTS]:
+        walk(d, n, s, command, t, slot, w)
+        return
+    if n[GLIDES] == 2 and slot >= 0 and slide(d, n, s, command, t, True, d, slide_table(n, int(s[MODE]), slot, 0), w):
+        return
+    substep(d, n, s, command, t, slot, w)
+
+
+@njit
 def control_step(d: Numbers, n: Places, s: Numbers, before: float, command: float, w: Numbers) -> None:
     """Move the arm on by one sample: the last command acts until the delay is over, then the new one."""
     for _ in range(n[EARLY_SUBSTEPS]):
-        if not n[GLIDES] or not glide(d, n, s, before, d[EARLY_LENGTH], 0, w):
-            substep(d, n, s, before, d[EARLY_LENGTH], 0, w)
+        if n[GLIDES] != 1 or not glide(d, n, s, before, d[EARLY_LENGTH], 0, w):
+            move(d, n, s, before, d[EARLY_LENGTH], 0, w)
     for _ in range(n[LATE_SUBSTEPS]):
-        if not n[GLIDES] or not glide(d, n, s, command, d[LATE_LENGTH], 1, w):
-            substep(d, n, s, command, d[LATE_LENGTH], 1, w)
+        if n[GLIDES] != 1 or not glide(d, n, s, command, d[LATE_LENGTH], 1, w):
+            move(d, n, s, command, d[LATE_LENGTH], 1, w)
 
 
 @njit(inline="always")
@@ -197,10 +250,10 @@ def uneven_step(
     early = min(d[EARLY_LENGTH] * n[EARLY_SUBSTEPS], interval)
     late = interval - early
     if early > 0.0:
-        substep(d, n, s, before, early, UNTABULATED, w)
-    count = max(int(math.ceil(late / d[LATE_LENGTH] - 1e-9)), 1) if late > 0.0 else 0
+        move(d, n, s, before, early, UNTABULATED, w)
+    count = max(math.ceil(late / d[LATE_LENGTH] - 1e-9), 1) if late > 0.0 else 0
     for _ in range(count):
-        substep(d, n, s, command, late / count, UNTABULATED, w)
+        move(d, n, s, command, late / count, UNTABULATED, w)
 
 
 @njit
@@ -210,7 +263,7 @@ def measure(d: Numbers, n: Places, s: Numbers, out: Numbers, at: int) -> None:
     size = 2 * n[BLOCKS]
     for i in range(n[SIGNALS]):
         row = here + n[OUTPUT_DRIVERS] + i * n[DRIVERS]
-        total = dot(d, here + n[OUTPUT] + i * size, s, HEADER, size) + d[row + W_ONE]
+        total = inlined_dot(d, here + n[OUTPUT] + i * size, s, HEADER, size) + d[row + W_ONE]
         out[at + i] = total + d[row + W_HELD_HUB] * s[HELD_HUB] + d[row + W_HELD_MOTOR] * s[HELD_MOTOR]
 
 

@@ -1,6 +1,7 @@
 """The laws of an arm without effects: what the kernel calls where no effect is active.
 
-`compose` puts a switch over the effects' own functions in the place of these. Parameters of effect `kind` start at d[k].
+`compose` puts a switch over the effects' own functions in the place of these. Parameters of
+effect `kind` start at d[k].
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Where each quantity stands in the flat arrays that the kernel reads and writes.
 
-The kernel takes four arrays and no more, because numba pays for each array at each call: constants d (float64), counts and
-places n (int64), the state s (float64) and scratch w (float64).
+The kernel takes four arrays and no more, because numba pays for each array at each call: constants d (float64), counts
+and places n (int64), the state s (float64) and scratch w (float64).
 """
 
 import numpy as np
@@ -16,17 +16,20 @@ Places = NDArray[np.int64]  # (any,)
 BODIES, COORDINATES, COUPLED, VARYING, POINTS, BLOCKS, SIGNALS, STATES, MODES, STRIDE = range(10)
 EARLY_SUBSTEPS, LATE_SUBSTEPS, DRIVERS = 10, 11, 12
 C0, C1, RESPONSES, PHYSICAL, MODAL, FORCING, FORCE_COLUMNS, SPEED, SPEED_WEIGHT, ANGLE, HOLDS_ANGLE = range(13, 24)
-WINDUP, WINDUP_WEIGHT, HOLD, HOLD_WEIGHT, HOLD_DRIVERS, HOLD_FORCES, DRAG_VELOCITY, OUTPUT, OUTPUT_DRIVERS = range(24, 33)
+WINDUP, WINDUP_WEIGHT, HOLD, HOLD_WEIGHT, HOLD_DRIVERS, HOLD_FORCES, DRAG_VELOCITY = range(24, 31)
+OUTPUT, OUTPUT_DRIVERS = 31, 32
 FRICTION_LAWS, TORQUE_LAWS, DRAG_LAWS, DRIVE_LAWS, PARAMETERS, GLIDES, GLIDE, REACH = range(33, 41)
-COUNTS = 41
+MESH, MESH_WEIGHT = 41, 42
+COUNTS = 43
 
-# --- one block's numbers in GLIDE, all that a step without events needs of it: C, S, R₀, S + c₁ R₀, c₀, c₁, how much its amplitude
-# bends the tested row, that row's two numbers, and its forcing by command, hub torque, 1 and held hub (two numbers each)
-G_C, G_S, G_R0, G_S_R0, G_C0, G_C1, G_BEND, G_ROW, G_COMMAND, G_HUB, G_ONE, G_HELD = 0, 1, 2, 3, 4, 5, 6, 7, 9, 11, 13, 15
+# --- one block's numbers in GLIDE, all that a step without events needs: C, S, R₀, S + c₁ R₀, c₀, c₁, how much its
+# amplitude bends the tested row, that row's two numbers, its forcing by command, hub torque, 1, held hub, two each
+G_C, G_S, G_R0, G_S_R0, G_C0, G_C1, G_BEND, G_ROW = range(8)
+G_COMMAND, G_HUB, G_ONE, G_HELD = 9, 11, 13, 15
 GLIDE_SIZE = 17
 
 # --- d: single constants, before the modes' records
-GAP, TOLERANCE, INTERVAL, EARLY_LENGTH, LATE_LENGTH, HUB_SHARE, MOTOR_SHARE = range(7)
+GAP, TOLERANCE, INTERVAL, EARLY_LENGTH, LATE_LENGTH, HUB_RUBS, MOTOR_RUBS = range(7)
 CONSTANTS = 8
 
 # --- s: the state; block coordinates z from HEADER on

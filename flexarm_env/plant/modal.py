@@ -52,60 +52,53 @@ def blocks_of(dynamics: Matrix) -> tuple[Matrix, Matrix, Matrix, Matrix]:
     size = dynamics.shape[0]
     if not size:  # a rigid arm that is held
         return np.zeros(0), np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0))
-    cyclic = np.flatnonzero(~dynamics.any(axis=0))
-    inner = np.setdiff1d(np.arange(size), cyclic)
-    values, vectors = np.linalg.eig(dynamics[np.ix_(inner, inner)])
-    rates = dynamics[np.ix_(cyclic, inner)]
-    c0, c1, first, second = [], [], [], []
-    real = []
-    for value, vector in zip(values, vectors.T, strict=True):
-        if value.imag < 0.0:
-            continue
-        p, big_p = np.zeros(size), np.zeros(size)
-        if value.imag == 0.0:
-            real.append(len(c0))
-            big_p[inner] = vector.real
-            p[cyclic] = rates @ vector.real
-            c0.append(0.0)
-            c1.append(-value.real)
-        else:
-            whole = np.zeros(size, complex)
-            whole[inner] = vector
-            whole[cyclic] = rates @ vector / value
-            largest = whole[np.abs(whole[: size // 2 + 1]).argmax()]
-            whole *= largest.conjugate() / abs(largest) ** 2
-            big_p[:] = whole.imag / value.imag
-            p[:] = whole.real - value.real * whole.imag / value.imag
-            c0.append(abs(value) ** 2)
-            c1.append(-2.0 * value.real)
-        first.append(p)
-        second.append(big_p)
-    count = len(real)
-    cover = np.array([first[k][cyclic] for k in real]).reshape(count, len(cyclic)).T
-    if len(cyclic) and (count < len(cyclic) or np.linalg.matrix_rank(cover) < len(cyclic)):
-        for place in cyclic:  # a place that no real mode reaches keeps a block of its own, which never moves
-            real.append(len(c0))
-            first.append(np.eye(size)[place])
-            second.append(np.zeros(size))
-            c0.append(0.0)
-            c1.append(0.0)
-        cover = np.array([first[k][cyclic] for k in real]).T
-    v = np.stack([column for pair in zip(first, second, strict=True) for column in pair], axis=1)
-    w = _inverse(v, real, [k for k in range(len(c0)) if np.any(second[k])], cyclic, inner, cover)
-    return np.array(c0), np.array(c1), v, w
+    moves = dynamics.any(axis=0)
+    cyclic, inner = np.flatnonzero(~moves), np.flatnonzero(moves)
+    values, vectors = np.linalg.eig(dynamics[inner[:, None], inner])
+    upper = values.imag >= 0.0
+    values, vectors = values[upper], vectors[:, upper]
+    real = np.flatnonzero(values.imag == 0.0)
+    vibrating = np.flatnonzero(values.imag != 0.0)
+    c0, c1 = np.zeros(len(values)), -values.real
+    v = np.zeros((size, 2 * len(values)))
+    if len(real):
+        found = vectors[:, real].real
+        v[inner[:, None], 2 * real + 1] = found
+        v[cyclic[:, None], 2 * real] = dynamics[cyclic[:, None], inner] @ found
+    rates = dynamics[cyclic[:, None], inner]
+    for k in vibrating:
+        value, whole = values[k], np.zeros(size, complex)
+        whole[inner] = vectors[:, k]
+        whole[cyclic] = rates @ vectors[:, k] / value
+        largest = whole[np.abs(whole[: size // 2 + 1]).argmax()]
+        whole *= largest.conjugate() / abs(largest) ** 2
+        v[:, 2 * k + 1] = whole.imag / value.imag
+        v[:, 2 * k] = whole.real - value.real * whole.imag / value.imag
+        c0[k], c1[k] = abs(value) ** 2, -2.0 * value.real
+    cover = v[cyclic[:, None], 2 * real]
+    if len(cyclic) and (len(real) < len(cyclic) or _rank(cover) < len(cyclic)):
+        # a place that no real mode reaches keeps a block of its own, which never moves
+        own = np.zeros((size, 2 * len(cyclic)))
+        own[cyclic, 2 * np.arange(len(cyclic))] = 1.0
+        real = np.concatenate([real, len(c0) + np.arange(len(cyclic))])
+        v, c0, c1 = np.hstack([v, own]), np.append(c0, np.zeros(len(cyclic))), np.append(c1, np.zeros(len(cyclic)))
+        cover = v[cyclic[:, None], 2 * real]
+    return c0, c1, v, _inverse(v, real, vibrating, cyclic, inner, cover)
 
 
-def _inverse(
-    v: Matrix, real: list[int], moving: list[int], cyclic: Places, inner: Places, cover: Matrix
-) -> Matrix:
+def _rank(matrix: Matrix) -> int:
+    return int(matrix.any()) if len(matrix) == 1 else int(np.linalg.matrix_rank(matrix))
+
+
+def _inverse(v: Matrix, real: Places, vibrating: Places, cyclic: Places, inner: Places, cover: Matrix) -> Matrix:
     w = np.zeros((v.shape[1], v.shape[0]))
-    used = [c for k in moving for c in ((2 * k + 1,) if k in real else (2 * k, 2 * k + 1))]
-    w[np.ix_(used, inner)] = np.linalg.inv(v[np.ix_(inner, used)])
+    moving = real[v[:, 2 * real + 1].any(axis=0)]
+    used = np.sort(np.concatenate([2 * moving + 1, 2 * vibrating, 2 * vibrating + 1]))
+    w[used[:, None], inner] = np.linalg.inv(v[inner[:, None], used])
     if len(cyclic):
-        spread = np.linalg.pinv(cover)
-        places = [2 * k for k in real]
-        w[np.ix_(places, cyclic)] = spread
-        w[np.ix_(places, inner)] = -spread @ (v[np.ix_(cyclic, used)] @ w[np.ix_(used, inner)])
+        spread = cover.T / np.sum(cover**2) if len(cyclic) == 1 else np.linalg.pinv(cover)
+        w[2 * real[:, None], cyclic] = spread
+        w[2 * real[:, None], inner] = -spread @ (v[cyclic[:, None], used] @ w[used[:, None], inner])
     return w
 
 
@@ -179,7 +172,7 @@ def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
 def _unlift(free: Matrix, extra: int) -> Matrix:
     """Return the matrix that picks the free coordinates, their rates and the extra states from [q, q̇, e]."""
     size, positions = free.shape
-    pick = np.linalg.inv(free) if size == positions else free.T
+    pick = 2.0 * np.eye(size) - free if size == positions else free.T  # its inverse: one entry off the diagonal
     out = np.zeros((2 * positions + extra, 2 * size + extra))
     out[:positions, :size] = out[positions : 2 * positions, size : 2 * size] = pick
     out[2 * positions :, 2 * size :] = np.eye(extra)
@@ -204,7 +197,7 @@ def _free_coordinates(names: list[str], which: int) -> tuple[Matrix, list[tuple[
     if which & MOTOR_STUCK:
         gone.append(1)
         held.append((HELD_MOTOR, 1))
-    return np.delete(free, gone, axis=1), held
+    return free[:, [place for place in range(size) if place not in gone]], held
 
 
 def _close_gears(structure: Structure, model: LinearModel, stiffness: Matrix, damping: Matrix, drivers: Matrix) -> None:

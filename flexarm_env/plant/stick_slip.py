@@ -23,7 +23,7 @@ from flexarm_env.plant.layout import (
     HOLD_FORCES,
     HOLDS_ANGLE,
     HUB_DIRECTION,
-    HUB_SHARE,
+    HUB_RUBS,
     MODAL,
     MODE,
     MODES,
@@ -62,12 +62,15 @@ def friction_budget(
     d: Numbers, n: Places, body: int, direction: float, speed: float, angle: float, time: float,
     at_rest: bool,
 ) -> float:  # fmt: skip
-    """Dry friction [Nm] that opposes motion in `direction`, or resists a push in it at rest: the sum over the effects."""
+    """Dry friction [Nm] that opposes motion in `direction`, or resists a push in it at rest: a sum over the effects."""
     total = 0.0
     place = n[FRICTION_LAWS]
     for j in range(n[place]):
-        total += friction_law(n[place + 1 + 2 * j], direction, speed, angle, time, at_rest, d, n[place + 2 + 2 * j])
-    return max(total, 0.0) * d[HUB_SHARE + body]
+        at = n[place + 2 + 2 * j]
+        share = d[at - 2 + body]
+        if share > 0.0:
+            total += share * friction_law(n[place + 1 + 2 * j], direction, speed, angle, time, at_rest, d, at)
+    return max(total, 0.0)
 
 
 @njit
@@ -90,7 +93,7 @@ def angle_of(d: Numbers, n: Places, s: Numbers, mode: int, body: int, z: Numbers
 
 @njit
 def read_motion(d: Numbers, n: Places, s: Numbers, mode: int, z: Numbers, at: int, w: Numbers, out: int) -> None:
-    """Write to w at `out` what the laws ask for: the bodies' angles, their speeds, the velocities at points of the beam."""
+    """Write to w at `out` what laws ask for: the bodies' angles, their speeds, velocities at points of the beam."""
     here, size, bodies = record(n, mode), 2 * n[BLOCKS], n[BODIES]
     for body in range(bodies):
         w[out + body] = angle_of(d, n, s, mode, body, z, at)
@@ -130,7 +133,7 @@ def evaluate_forces(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, ou
 @njit
 def rubs(d: Numbers, n: Places, body: int) -> bool:
     """Whether a body has dry friction at all: without, it never sticks, and zero speed is nothing to it."""
-    return n[n[FRICTION_LAWS]] > 0 and d[HUB_SHARE + body] > 0.0
+    return d[HUB_RUBS + body] > 0.0
 
 
 @njit
@@ -153,8 +156,10 @@ def applied_offset(
 @njit
 def static_budget(d: Numbers, n: Places, s: Numbers, mode: int, body: int, direction: float) -> float:
     """Static friction [Nm] that resists a push in `direction` on a held body."""
-    angle = angle_of(d, n, s, mode, body, s, HEADER)
-    return friction_budget(d, n, body, direction, 0.0, angle, s[TIME], True)
+    angle = s[HELD_HUB + body]
+    at_rest = friction_budget(d, n, body, direction, 0.0, angle, s[TIME], True)
+    # a body that breaks away against less than what then opposes it would be driven by its own friction
+    return max(at_rest, friction_budget(d, n, body, direction, 0.0, angle, s[TIME], False))
 
 
 @njit

@@ -16,6 +16,8 @@ COMMAND, HUB_TORQUE, MOTOR_TORQUE, ONE, GEAR_SIDE, HELD_HUB, HELD_MOTOR = range(
 #: Stiffness [Nm/rad] of gears that touch, where backlash asks for a motor of its own but no
 #: compliance is given: stiff enough that windup stays below what a pot resolves.
 GEAR_STIFFNESS = 4000.0
+#: A gear or a beam's root that gives way less than this [rad/Nm] is rigid.
+LEAST_COMPLIANCE = 1e-7
 #: Damping of gears that touch, as a time [s] times their stiffness.
 GEAR_DAMPING_TIME = 5e-4
 
@@ -39,7 +41,6 @@ class Structure:
     motor_inertia: float
     hub_inertia: float
     resistance: float = 0.0  # 0: current drive
-    motor_coulomb_share: float = 0.0
     motor_viscous_share: float = 0.0
     elements: int = 0  # 0: a rigid arm
     length: float = 0.0
@@ -61,12 +62,12 @@ class Structure:
     @property
     def separate_motor(self) -> bool:
         """Whether motor and hub are two bodies."""
-        return self.gear_compliance > 0.0 or self.gear_gap > 0.0
+        return self.gear_compliance > LEAST_COMPLIANCE or self.gear_gap > 0.0
 
     @property
     def gear_stiffness(self) -> float:
         """Stiffness of the touching gears, arm side [Nm/rad]."""
-        return 1.0 / self.gear_compliance if self.gear_compliance > 0.0 else GEAR_STIFFNESS
+        return 1.0 / self.gear_compliance if self.gear_compliance > LEAST_COMPLIANCE else GEAR_STIFFNESS
 
 
 @dataclass
@@ -102,9 +103,11 @@ def assemble(structure: Structure) -> LinearModel:
     names = ["hub"] + (["motor"] if s.separate_motor else [])
     beam = Beam(s.elements, s.length, s.mass_per_length, s.bending_stiffness) if s.elements else None
     # a beam coordinate stands where its own numbering puts it, the root's slope only if it can turn
-    kept = [] if beam is None else ([1] if s.root_compliance > 0.0 else []) + list(range(2, beam.size))
-    names += [] if beam is None else (["root"] if s.root_compliance > 0.0 else []) + _node_names(s.elements)
-    place = np.array([0] + list(range(len(names) - len(kept), len(names))), dtype=int)
+    kept = [] if beam is None else ([1] if s.root_compliance > LEAST_COMPLIANCE else []) + list(range(2, beam.size))
+    names += (
+        [] if beam is None else (["root"] if s.root_compliance > LEAST_COMPLIANCE else []) + _node_names(s.elements)
+    )
+    place = np.array([0, *range(len(names) - len(kept), len(names))], dtype=int)
     size = len(names)
     mass, damping, stiffness = (np.zeros((size, size)) for _ in range(3))
 
@@ -124,7 +127,7 @@ def assemble(structure: Structure) -> LinearModel:
         turn = np.zeros(size)
         turn[0] = turn[-1] = 1.0
         mass += s.tip_inertia * np.outer(turn, turn)
-        if s.root_compliance > 0.0:
+        if s.root_compliance > LEAST_COMPLIANCE:
             root = names.index("root")
             stiffness[root, root] += 1.0 / s.root_compliance
     motor = names.index("motor") if s.separate_motor else 0
@@ -202,10 +205,10 @@ def _sensors(s: Structure, model: LinearModel, beam: Beam | None, spread, motor:
     filtered = [i for i, sensor in enumerate(s.sensors.values()) if sensor.filter > 0.0]
     before = model.extra.shape[0]
     total = before + len(filtered)
-    model.extra = np.pad(model.extra, (0, len(filtered)))
-    model.from_extra = np.pad(model.from_extra, ((0, 0), (0, len(filtered))))
-    model.extra_from_motion = np.pad(model.extra_from_motion, ((0, len(filtered)), (0, 0)))
-    model.extra_from_input = np.pad(model.extra_from_input, ((0, len(filtered)), (0, 0)))
+    model.extra = _grown(model.extra, total, total)
+    model.from_extra = _grown(model.from_extra, size, total)
+    model.extra_from_motion = _grown(model.extra_from_motion, total, 2 * size)
+    model.extra_from_input = _grown(model.extra_from_input, total, len(DRIVERS))
     model.output = np.zeros((len(rows), 2 * size + total))
     model.output_from_input = np.zeros((len(rows), len(DRIVERS)))
     model.signals = list(s.sensors)
@@ -218,3 +221,10 @@ def _sensors(s: Structure, model: LinearModel, beam: Beam | None, spread, motor:
             model.output[i, 2 * size + place] = 1.0
         else:
             model.output[i, : 2 * size] = row
+
+
+def _grown(matrix: Matrix, rows: int, columns: int) -> Matrix:
+    """Return the matrix with zeros below and to the right."""
+    grown = np.zeros((rows, columns))
+    grown[: matrix.shape[0], : matrix.shape[1]] = matrix
+    return grown

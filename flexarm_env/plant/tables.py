@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.beam import Matrix
 from flexarm_env.plant.modal import Mode, mode_of
-from flexarm_env.plant.structure import DRIVERS, HUB_TORQUE, MOTOR_TORQUE, LinearModel, Structure
+from flexarm_env.plant.slide import DEPTH, table_size
+from flexarm_env.plant.structure import DRIVERS, GEAR_DAMPING_TIME, HUB_TORQUE, MOTOR_TORQUE, LinearModel, Structure
 
 RESPONSE = 5
-#: Longest step [s] over which a force that depends on the motion is fitted by one parabola.
-LONGEST_VARYING_STEP = 2.5e-3
+#: Longest steps [s] over which a force that depends on the motion is fitted by one quartic; with drag, by a parabola.
+LONGEST_STEP, LONGEST_STEP_WITH_DRAG = 5e-3, 2.5e-3
 #: Change of a force [Nm, N/m] below which the sweeps that fit it stop.
 TOLERANCE = 1e-12
 
@@ -25,12 +26,14 @@ class ActiveLaw:
     """One law at work: its place in the catalogue's list of laws, its parameters in the law's order.
 
     `varies` says that it changes while a body turns one way, so that the force must be fitted over each step.
+    `motor_share` is the part of it that acts on the motor where motor and hub are two bodies.
     """
 
     kind: int
     port: str
     parameters: tuple[float, ...]
     varies: bool
+    motor_share: float = 0.0
 
 
 def pack(
@@ -52,36 +55,45 @@ def pack(
     whole, early = split_delay(structure.input_delay, interval)
     n = np.zeros(at.COUNTS, dtype=np.int64)
     blocks = max(len(mode.c0) for mode in modes)
-    reach = (2 * bodies + points) * 3 * (bodies + points) if varying else 0
-    records = [_record(model, mode, which, bodies, points, blocks, reach) for which, mode in enumerate(modes)]
     n[at.BODIES], n[at.COORDINATES], n[at.POINTS] = bodies, len(model.names), points
     n[at.COUPLED] = bodies == 2 or structure.hub_stiffness != 0.0
     n[at.VARYING] = varying
-    n[at.GLIDES] = bodies == 1 and not varying and not points
+    n[at.GLIDES] = 0 if varying else bodies
     n[at.BLOCKS] = blocks
     n[at.SIGNALS], n[at.STATES], n[at.DRIVERS] = len(model.signals), modes[0].physical.shape[0], len(DRIVERS)
     n[at.MODES] = at.CONSTANTS
+    reach = _size_of_tables(n)
+    records = [_record(model, mode, which, bodies, points, blocks, reach) for which, mode in enumerate(modes)]
     place = 0
     for key, value in records[0].items():
         n[key] = place
         place += value.size
     n[at.STRIDE] = place
-    longest = LONGEST_VARYING_STEP if varying else np.inf
+    longest = LONGEST_STEP_WITH_DRAG if points else LONGEST_STEP if varying else np.inf
     parts = np.array([early, interval - early])
     steps = np.where(parts > 0.0, np.maximum(np.ceil(parts / longest - 1e-9), 1), 0)
     n[at.EARLY_SUBSTEPS], n[at.LATE_SUBSTEPS] = steps.astype(int)
     n[at.PARAMETERS] = at.CONSTANTS + count * place
-    lists, parameters = _law_lists(active, int(n[at.PARAMETERS]))
+    lists, parameters = _law_lists(active, int(n[at.PARAMETERS]), bodies)
     laws: list[int] = []
     for key, rows in zip((at.FRICTION_LAWS, at.TORQUE_LAWS, at.DRAG_LAWS, at.DRIVE_LAWS), lists, strict=True):
         n[key] = at.COUNTS + len(laws)
         laws += rows
-    share = structure.motor_coulomb_share if bodies == 2 else 0.0
     lengths = parts / np.maximum(steps, 1)
     gap = structure.gear_gap / structure.gear_ratio
-    head = [gap, TOLERANCE, interval, lengths[0], lengths[1], 1.0 - share, share, 0.0]
+    shares = [law.motor_share if bodies == 2 else 0.0 for law in active if law.port == "friction"]
+    rubs = [sum(1.0 - share for share in shares), sum(shares)]
+    head = [gap, TOLERANCE, interval, lengths[0], lengths[1], *rubs, 0.0]
     d = np.concatenate([head, *(v.ravel() for record in records for v in record.values()), parameters])
     return d, np.concatenate([n, np.array(laws, dtype=np.int64)]), whole
+
+
+def _size_of_tables(n: NDArray[np.int64]) -> int:
+    """Numbers of a mode's tables of slides, or, with drag, of what forces move."""
+    if n[at.POINTS]:
+        return int(12 * (2 * n[at.BODIES] + n[at.POINTS]) * (n[at.BODIES] + n[at.POINTS]))
+    levels = (DEPTH + 1 if n[at.VARYING] else 1) if n[at.VARYING] or n[at.BODIES] == 2 else 0
+    return 2 * levels * int(getattr(table_size, "py_func", table_size)(n))
 
 
 def split_delay(delay: float, interval: float) -> tuple[int, float]:
@@ -100,12 +112,13 @@ def _record(
     c0, c1 = (np.concatenate([c, np.zeros(blocks - len(c))]) for c in (mode.c0, mode.c1))
     hold = _wide(mode.hold, blocks)
     speed, windup = physical[size : size + bodies], physical[bodies - 1] - physical[0]
+    mesh = windup + GEAR_DAMPING_TIME * (speed[bodies - 1] - speed[0])
     return {
         at.C0: c0,
         at.C1: c1,
         at.RESPONSES: np.zeros((2, 2, blocks, RESPONSE)),
         at.GLIDE: np.zeros((2, blocks, at.GLIDE_SIZE)),
-        at.REACH: np.zeros((2, 2, reach)),
+        at.REACH: np.zeros(reach),
         at.PHYSICAL: physical,
         at.MODAL: _wide(mode.modal.T, blocks).T,
         at.FORCING: _wide(mode.forcing.T, blocks).T,
@@ -116,6 +129,8 @@ def _record(
         at.HOLDS_ANGLE: np.array([float((which >> body) & 1) for body in range(bodies)]),
         at.WINDUP: windup,
         at.WINDUP_WEIGHT: _weights(windup[None], c0, c1),
+        at.MESH: mesh,
+        at.MESH_WEIGHT: _weights(mesh[None], c0, c1),
         at.HOLD: hold,
         at.HOLD_WEIGHT: _weights(hold, c0, c1),
         at.HOLD_DRIVERS: mode.hold_drivers,
@@ -139,13 +154,16 @@ def _weights(rows: Matrix, c0: Matrix, c1: Matrix) -> Matrix:
     return weights
 
 
-def _law_lists(active: Sequence[ActiveLaw], start: int) -> tuple[list[list[int]], list[float]]:
+def _law_lists(active: Sequence[ActiveLaw], start: int, bodies: int) -> tuple[list[list[int]], list[float]]:
+    """Counts, kinds and places of the laws by port, and their parameters, each law's after hub's and motor's share."""
     parameters: list[float] = []
     lists = []
     for port in ("friction", "torque", "drag", "drive"):
         laws = [law for law in active if law.port == port]
         rows = [len(laws)]
         for law in laws:
+            share = law.motor_share if bodies == 2 else 0.0
+            parameters += [1.0 - share, share]
             rows += [law.kind, start + len(parameters)]
             parameters += law.parameters
         lists.append(rows)

@@ -152,5 +152,3 @@ def collocate(
         before = change
     fit_parabola(w, nodes, nodes + count, nodes + 2 * count, count, t, coefficients)
     add_forces(d, n, mode, w, coefficients, force)
-
-

@@ -118,9 +118,7 @@ def test_reads_a_native_file(tmp_path: Path) -> None:
         ("tip_deflection", "mm", -3, -0.003),
     ],
 )
-def test_any_compatible_unit_converts(
-    tmp_path: Path, column: str, unit: str, value: float, expected: float
-) -> None:
+def test_any_compatible_unit_converts(tmp_path: Path, column: str, unit: str, value: float, expected: float) -> None:
     text = f"time [ms],current [mA],{column}[{unit}]\n0,500,{value}\n10,0,0\n"
     recording = Recording.read(save(tmp_path, text))
     assert recording.signals[column][0] == pytest.approx(expected, rel=1e-15)
@@ -273,9 +271,7 @@ def test_a_pipe_is_refused_and_not_waited_for(tmp_path: Path) -> None:
     assert "not a regular file" in refusal(tmp_path / "pipe.csv")
 
 
-@pytest.mark.skipif(
-    not hasattr(os, "geteuid") or os.geteuid() == 0, reason="permissions do not bind this user"
-)
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="permissions do not bind this user")
 def test_permission_error(tmp_path: Path) -> None:
     path = save(tmp_path, GOOD)
     path.chmod(0)
@@ -306,9 +302,7 @@ def test_control_characters_do_not_break_the_line(tmp_path: Path) -> None:
 
 
 @settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(
-    where=st.integers(0, len(GOOD)), cut=st.integers(0, 20), junk=st.text(max_size=8) | st.binary(max_size=8)
-)
+@given(where=st.integers(0, len(GOOD)), cut=st.integers(0, 20), junk=st.text(max_size=8) | st.binary(max_size=8))
 def test_damaged_files_are_read_or_refused(tmp_path: Path, where: int, cut: int, junk: str | bytes) -> None:
     extra = junk if isinstance(junk, bytes) else junk.encode("utf-8", "surrogatepass")
     content = GOOD.encode()
@@ -414,9 +408,7 @@ def test_text_in_columns_not_asked_for_does_no_harm(tmp_path: Path) -> None:
 
 def test_a_plain_scale_and_a_calibration_multiply(tmp_path: Path) -> None:
     table = {**LOGGER, "arm_angle": {"column": "phi", "unit": "V", "scale": 0.5}}
-    recording = Recording.read(
-        save(tmp_path, "t;i;phi\n0;1;3\n1;1;3\n"), table, calibration={"arm_angle": 2.0}
-    )
+    recording = Recording.read(save(tmp_path, "t;i;phi\n0;1;3\n1;1;3\n"), table, calibration={"arm_angle": 2.0})
     assert recording.signals["arm_angle"][0] == 3.0
 
 

@@ -1,0 +1,46 @@
+"""Measure speed and accuracy and say which goals are met; whatever the figures, it ends with 0."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+# The matrices are small: threads inside BLAS cost more than they bring, to the peers as well.
+for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ.setdefault(variable, "1")
+
+from benchmarks import diagnosis, plant, report, start  # noqa: E402
+
+PARTS = {"plant": plant, "start": start, "diagnosis": diagnosis}
+OUTPUT = Path(__file__).resolve().parent.parent / "results" / "bench" / "bench.json"
+
+
+def main() -> None:
+    """Run the parts that are asked for, all by default."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    for name, part in PARTS.items():
+        parser.add_argument(f"--{name}", action="store_true", help=f"only: {part.__doc__}")
+    parser.add_argument("--output", type=Path, help="the JSON file; results/bench/bench.json after a whole run")
+    asked = parser.parse_args()
+    names = [name for name in PARTS if getattr(asked, name)] or list(PARTS)
+    began = time.perf_counter()
+
+    def say(text: str) -> None:
+        print(f"{time.perf_counter() - began:4.0f} s  {text}", file=sys.stderr, flush=True)
+
+    found: dict[str, Any] = {}
+    for name in names:
+        found |= PARTS[name].measure(say)
+    report.show(found)
+    output = asked.output or (OUTPUT if len(names) == len(PARTS) else None)
+    if output is not None:
+        report.write(output, found, time.perf_counter() - began)
+        say(f"figures are in {output}")
+
+
+if __name__ == "__main__":
+    main()

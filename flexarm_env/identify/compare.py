@@ -1,0 +1,144 @@
+"""Where an arm fails: errors by signal, by regime of motion and by frequency band, against the noise."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.data import Data, Run, prepare
+from flexarm_env.identify.predict import replay, window_observers, window_replay
+from flexarm_env.identify.preflight import preflight
+from flexarm_env.identify.recording import Recording
+from flexarm_env.identify.refit import Progress
+from flexarm_env.identify.results import Comparison, Replay, Row
+from flexarm_env.plant.plant import Plant
+
+Floats = NDArray[np.float64]
+
+REGIMES = ("stuck", "moving slowly", "moving fast")
+#: The hub moves fast above this share of its largest speed.
+FAST = 0.1
+#: Edges of the frequency bands [Hz]; the last ends at half the sampling rate.
+BANDS = (0.0, 2.0, 5.0, 15.0, 50.0)
+
+
+def compare(arm: Arm, recordings: Sequence[Recording], progress: Progress | None = None) -> Comparison:
+    """Replay recordings through an arm and say where it fails. Nothing is fitted, so all samples count.
+
+    Args:
+        arm: the model.
+        recordings: of the machine.
+        progress: called with the share done and what is being done.
+
+    Raises:
+        InputError: for recordings that do not fit the arm.
+    """
+    reduced, data = prepare(arm, recordings)
+    notes, _ = preflight(reduced, data)
+    plant = reduced.plant(data.interval)
+    observers = window_observers(reduced, plant, data)
+    replays = []
+    for i, run in enumerate(data.runs):
+        if progress:
+            progress(i / len(data.runs), f"replaying {run.name}")
+        windows = window_replay(plant, run, observers, data.noise, data.interval)
+        free = replay(plant, run)
+        replays.append(_replay(run, data.signals, free, windows, regimes(plant, run, free, data)))
+    rows = list(_rows(replays, data))
+    whole = rows[-1]
+    noise = {s: float(n) for s, n in zip(data.signals, data.noise, strict=True)}
+    return Comparison(arm, rows, replays, noise, whole.error, whole.free_run, notes)
+
+
+def regimes(plant: Plant, run: Run, free: Floats, data: Data) -> NDArray[np.int64]:
+    """Return (samples,) 0 where the measured hub is stuck, 1 where it moves slowly, 2 where fast.
+
+    From the measured speed, or the slope of the measured angle; of the model's where neither is measured.
+    """
+    if "motor_speed" in data.signals:
+        column = data.signals.index("motor_speed")
+        speed, noise = run.measured[:, column], data.noise[column]
+    elif "arm_angle" in data.signals:
+        column = data.signals.index("arm_angle")
+        speed = np.gradient(run.measured[:, column], run.time)
+        noise = data.noise[column] / data.interval
+    else:
+        return np.full(len(run.time), 2, dtype=np.int64)
+    width = max(int(0.02 / data.interval), 1)
+    smooth = np.abs(np.convolve(np.pad(speed, width, mode="edge"), np.ones(2 * width + 1) / (2 * width + 1), "valid"))
+    still = 3.0 * noise / np.sqrt(2 * width + 1)
+    moving = np.where(smooth > FAST * np.abs(speed).max(), 2, 1)
+    return np.where(smooth < still, 0, moving).astype(np.int64)
+
+
+def _replay(run: Run, signals: Sequence[str], free: Floats, windows: Floats, regime: NDArray[np.int64]) -> Replay:
+    def columns(values: Floats) -> dict[str, Floats]:
+        return {signal: values[:, i] for i, signal in enumerate(signals)}
+
+    return Replay(run.name, run.time, columns(run.measured), columns(free), columns(windows), regime)
+
+
+def _rows(replays: Sequence[Replay], data: Data) -> Iterator[Row]:
+    for signal, noise in zip(data.signals, data.noise, strict=True):
+        for one in replays:
+            yield _row(one.name, signal, "all", [one], {signal: float(noise)})
+        for code, regime in enumerate(REGIMES):
+            yield _row("all", signal, regime, replays, {signal: float(noise)}, code)
+        yield from _band_rows(replays, signal, float(noise), data.interval)
+    sigma = {s: float(n) for s, n in zip(data.signals, data.noise, strict=True)}
+    for code, regime in enumerate(REGIMES):
+        yield _row("all", "all", regime, replays, sigma, code)
+    for one in replays:
+        yield _row(one.name, "all", "all", [one], sigma)
+    yield _row("all", "all", "all", replays, sigma)
+
+
+def _row(
+    recording: str,
+    signal: str,
+    part: str,
+    replays: Sequence[Replay],
+    noise: dict[str, float],
+    regime: int | None = None,
+) -> Row:
+    windows, free, count = 0.0, 0.0, 0
+    for one in replays:
+        chosen = np.full(len(one.time), True) if regime is None else one.regime == regime
+        for name, sigma in noise.items():
+            measured = one.measured[name][chosen]
+            windows += float(np.sum(((measured - one.windows[name][chosen]) / sigma) ** 2))
+            free += float(np.sum(((measured - one.free[name][chosen]) / sigma) ** 2))
+            count += int(chosen.sum())
+    fit = float("nan")
+    if signal != "all" and recording != "all":
+        fit = fit_percent(replays[0].measured[signal], replays[0].free[signal])
+    if not count:
+        return Row(recording, signal, part, float("nan"), float("nan"), fit, 0)
+    return Row(recording, signal, part, float(np.sqrt(windows / count)), float(np.sqrt(free / count)), fit, count)
+
+
+def fit_percent(measured: Floats, model: Floats) -> float:
+    """Return 100 (1 − ‖y − ŷ‖ / ‖y − ȳ‖) [%], as MATLAB's compare does."""
+    spread = float(np.linalg.norm(measured - measured.mean()))
+    return 100.0 * (1.0 - float(np.linalg.norm(measured - model)) / spread) if spread else float("nan")
+
+
+def _band_rows(replays: Sequence[Replay], signal: str, noise: float, interval: float) -> Iterator[Row]:
+    """Errors over noise by frequency: white noise alone gives 1 in every band."""
+    nyquist = 0.5 / interval
+    edges = [edge for edge in BANDS if edge < nyquist] + [nyquist]
+    power = np.zeros(len(edges) - 1)
+    count = np.zeros(len(edges) - 1)
+    for one in replays:
+        error = one.measured[signal] - one.windows[signal]
+        spectrum = np.abs(np.fft.rfft(error)) ** 2 / len(error)
+        frequency = np.fft.rfftfreq(len(error), interval)
+        place = np.clip(np.searchsorted(edges, frequency, side="right") - 1, 0, len(power) - 1)
+        np.add.at(power, place, spectrum)
+        np.add.at(count, place, 1.0)
+    for low, high, p, c in zip(edges, edges[1:], power, count, strict=False):
+        band_error = float(np.sqrt(p / c)) / noise if c else float("nan")
+        yield Row("all", signal, f"{low:g}-{high:g} Hz", band_error, float("nan"), float("nan"), int(c))

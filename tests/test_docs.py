@@ -1,0 +1,278 @@
+"""The documentation does what it says: every command and every snippet runs, and its numbers are those of the results.
+
+`python tests/test_docs.py` writes the demo's numbers into README.md.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+PROJECT = Path(__file__).resolve().parent.parent
+README = PROJECT / "README.md"
+DOCUMENTS = [README, *sorted((PROJECT / "docs").glob("*.md"))]
+DEMO = PROJECT / "results" / "demo" / "demo.json"
+
+# A comment before a block says that it takes long; a first line "# name.ext" makes it a file that later blocks use.
+BLOCK = re.compile(r"^(<!-- slow -->\n)?```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+FILE = re.compile(r"# ([\w-]+\.\w+)\n")
+TABLE = re.compile(r"(?<=<!-- demo -->\n).*?(?=<!-- /demo -->)", re.DOTALL)
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)#]*)(?:#([^)]*))?\)")
+TIME_LIMIT = 900
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block: its language, text and first line's number; whether it is slow; the file that it is, or ""."""
+
+    language: str
+    text: str
+    line: int
+    slow: bool
+    file: str
+
+
+def blocks_of(document: Path) -> list[Block]:
+    text = document.read_text(encoding="utf-8")
+    found = []
+    for match in BLOCK.finditer(text):
+        name = FILE.match(match[3])
+        line = text.count("\n", 0, match.start(3)) + 1
+        found.append(Block(match[2], match[3], line, bool(match[1]), name[1] if name else ""))
+    return found
+
+
+def name_of(document: Path) -> str:
+    return document.relative_to(PROJECT).as_posix()
+
+
+def has_slow(document: Path) -> bool:
+    return any(block.slow for block in blocks_of(document))
+
+
+every_document = pytest.mark.parametrize("document", DOCUMENTS, ids=name_of)
+
+
+# What the documents say is run
+
+
+@pytest.fixture
+def place(tmp_path: Path) -> Path:
+    """An empty folder beside which the command flexarm is found, whether the package is installed or not."""
+    command = tmp_path / "bin" / "flexarm"
+    command.parent.mkdir()
+    program = "from flexarm_env.cli import main; main()"
+    command.write_text(f"#!/bin/sh\nexec '{sys.executable}' -c '{program}' \"$@\"\n")
+    command.chmod(0o755)
+    folder = tmp_path / "work"
+    folder.mkdir()
+    return folder
+
+
+def environment(folder: Path) -> dict[str, str]:
+    path = os.pathsep.join([str(folder.parent / "bin"), str(Path(sys.executable).parent), os.environ["PATH"]])
+    threads = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "Agg", "PYTHONUTF8": "1"}
+    paths = os.pathsep.join(filter(None, [str(PROJECT), os.environ.get("PYTHONPATH")]))
+    return {**os.environ, **threads, "PATH": path, "PYTHONPATH": paths}
+
+
+def call(document: Path, block: Block, folder: Path, arguments: list[str]) -> None:
+    run = subprocess.run(
+        arguments, cwd=folder, env=environment(folder), capture_output=True, text=True, timeout=TIME_LIMIT, check=False
+    )
+    where = f"{name_of(document)}, line {block.line}"
+    assert run.returncode == 0, f"{where}: exit code {run.returncode}\n{block.text}\n{run.stdout}{run.stderr}"
+
+
+def run_block(document: Path, block: Block, folder: Path) -> None:
+    if block.file:
+        (folder / block.file).write_text(block.text, encoding="utf-8")
+    if block.language == "bash":
+        made = [line for line in block.text.splitlines() if line.startswith("make ")]
+        rest = "\n".join(line for line in block.text.splitlines() if line not in made)
+        for line in made:  # what a target runs is tested elsewhere; here, that there is one
+            call(document, block, folder, ["make", "-n", "-C", str(PROJECT), *line.split()[1:]])
+        if rest.strip():
+            call(document, block, folder, ["bash", "-euc", rest])
+    elif block.language == "python" and not block.file:
+        script = folder.parent / "snippet.py"
+        script.write_text(block.text, encoding="utf-8")
+        call(document, block, folder, [sys.executable, str(script)])
+
+
+def recordings_of_the_demo(folder: Path) -> None:
+    """The folder of recordings that README.md takes for granted."""
+    (folder / "runs").mkdir()
+    for file in (PROJECT / "flexarm_env" / "demo").glob("*.csv"):
+        shutil.copy(file, folder / "runs")
+
+
+def recordings_of_the_bench(folder: Path) -> None:
+    """Recordings of the arm of docs/your-arm.md with Coulomb friction, as its data logger writes them."""
+    from flexarm_env.arm import Arm
+    from flexarm_env.identify.simulate import simulate
+
+    document = PROJECT / "docs" / "your-arm.md"
+    block = next(block for block in blocks_of(document) if block.file == "bench.toml")
+    (folder / block.file).write_text(block.text, encoding="utf-8")
+    arm = Arm.load(folder / block.file).with_effect("coulomb", torque=0.1)
+    (folder / "runs").mkdir()
+    for seed, name in enumerate(("monday", "tuesday")):
+        made = simulate(arm, "pulse", duration=8.0, rate=250.0, seed=seed)
+        angle, strain = made.signals["arm_angle"], made.signals["strain_base"]
+        columns = {"t": made.time * 1e3, "I": made.command * 1e3, "encoder": -angle * 57.29577951, "gage": strain * 1e3}
+        with (folder / "runs" / f"{name}.csv").open("w", encoding="utf-8", newline="") as file:
+            writer = csv.writer(file, delimiter=";")
+            writer.writerow(columns)
+            writer.writerows([f"{x:.6f}".replace(".", ",") for x in row] for row in zip(*columns.values(), strict=True))
+
+
+PREPARE = {"README.md": recordings_of_the_demo, "docs/your-arm.md": recordings_of_the_bench}
+
+
+def prepare(document: Path, folder: Path) -> None:
+    PREPARE.get(name_of(document), lambda folder: None)(folder)
+
+
+@every_document
+def test_commands_and_snippets_run(document, place):
+    prepare(document, place)
+    for block in blocks_of(document):
+        if not block.slow:
+            run_block(document, block, place)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("document", [d for d in DOCUMENTS if has_slow(d)], ids=name_of)
+def test_slow_commands_and_snippets_run(document, place):
+    prepare(document, place)
+    for block in blocks_of(document):
+        run_block(document, block, place)
+
+
+@every_document
+def test_every_block_is_one_that_is_run_or_read(document):
+    text = document.read_text(encoding="utf-8")
+    assert len(re.findall("^```", text, re.MULTILINE)) == 2 * len(blocks_of(document))
+    for block in blocks_of(document):
+        assert block.language in ("bash", "python", "toml"), f"line {block.line}"
+        if block.language == "toml":
+            tomllib.loads(block.text)
+
+
+# What they name is there
+
+
+def anchors(document: Path) -> set[str]:
+    heads = re.findall(r"^#+ (.*)$", BLOCK.sub("", document.read_text(encoding="utf-8")), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-") for head in heads}
+
+
+@every_document
+def test_links_lead_somewhere(document):
+    for target, anchor in LINK.findall(document.read_text(encoding="utf-8")):
+        file = (document.parent / target).resolve() if target else document
+        assert file.is_file(), f"{target} is not there; `make demo` makes results/demo"
+        assert not anchor or anchor in anchors(file), f"{target} has no heading #{anchor}"
+
+
+@every_document
+def test_no_path_of_one_machine(document):
+    assert not re.search(r"(^|[\s`\"'(])/(tmp|home|work|root|usr|Users)/", document.read_text(encoding="utf-8"))
+
+
+def column(heading: str) -> list[str]:
+    """First cells of the table under a heading of README.md, without quotes of code."""
+    section = README.read_text(encoding="utf-8").split(f"\n## {heading}\n")[1].split("\n## ")[0]
+    return re.findall(r"^\| `([^`]+)`", section, re.MULTILINE)
+
+
+def test_readme_names_every_command():
+    from flexarm_env.cli.app import app
+
+    known = {command.name or command.callback.__name__ for command in app.registered_commands}
+    if not (PROJECT / "benchmarks" / "__main__.py").is_file():
+        known -= {"bench"}
+    assert {line.split()[1] for line in column("Commands")} == known
+
+
+def test_readme_names_every_shipped_arm():
+    from flexarm_env.arm_file import shipped_arms
+
+    assert set(column("Arms")) == set(shipped_arms())
+
+
+def test_readme_is_short():
+    assert len(README.read_text(encoding="utf-8").splitlines()) <= 120
+
+
+def test_an_effect_of_one_s_own_takes_under_forty_lines():
+    (block,) = [b for b in blocks_of(PROJECT / "docs" / "your-effect.md") if b.file]
+    assert len(block.text.splitlines()) < 40
+
+
+def test_your_arm_names_every_verdict():
+    from flexarm_env.pictures import words
+
+    text = (PROJECT / "docs" / "your-arm.md").read_text(encoding="utf-8").split("## Verdicts")[1]
+    named = set(re.findall(r"^\| `([a-z_]+)`", text, re.MULTILINE))
+    source = Path(words.__file__).read_text(encoding="utf-8")
+    assert named == set(re.findall(r'diagnosis\.verdict == "(\w+)"', source)) | {"effects"}
+
+
+# The demo's numbers
+
+
+def demo_table(results: Mapping[str, Any]) -> str:
+    """What README.md says of the demo, from the numbers in results/demo/demo.json."""
+    from flexarm_env.demo.story import HIDDEN
+    from flexarm_env.pictures.words import number
+
+    diagnosis, added = results["diagnose"], results["add"]
+    steps = {
+        "model as given": "nominal",
+        "constants refitted": "refitted",
+        f"`{added['effect']}` added, all refitted": "final",
+    }
+    rows = [f"| {name} | {number(added['error'][k])} | {number(added['free_run'][k])} |" for name, k in steps.items()]
+    effect, key, size, unit = HIDDEN
+    found = f"The verdict is `{diagnosis['verdict']}`: {', '.join(diagnosis['effects']) or 'none named'}."
+    hidden = f"Hidden was {effect}, {key} {size} {unit}"
+    if added["effect"] == effect:
+        value = added["parameters"][key]
+        low, high = (number(value[end], 4) for end in ("low", "high"))
+        hidden += f"; found {number(value['value'], 4)} {unit} (90 % interval {low} to {high})"
+    lines = [
+        "| held-out error over noise | windows of 1 s | one free run |",
+        "|---|---:|---:|",
+        *rows,
+        "",
+        f"{found} {hidden}.",
+        f"The diagnosis took {number(diagnosis['seconds'], 2)} s in two processes.",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def test_readme_has_the_numbers_of_the_demo():
+    assert DEMO.is_file(), "no results/demo/demo.json; `make demo` makes it"
+    (written,) = TABLE.findall(README.read_text(encoding="utf-8"))
+    wanted = demo_table(json.loads(DEMO.read_text(encoding="utf-8")))
+    assert written == wanted, "README.md has other numbers than results/demo/demo.json: python tests/test_docs.py"
+
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(PROJECT))
+    table = demo_table(json.loads(DEMO.read_text(encoding="utf-8")))
+    README.write_text(TABLE.sub(lambda _: table, README.read_text(encoding="utf-8")), encoding="utf-8")
