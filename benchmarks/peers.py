@@ -53,9 +53,7 @@ class Peer:
     The state is [hub angle, deflections and slopes against the hub's line, speeds likewise, current].
     """
 
-    def __init__(
-        self, constants: Mapping[str, Mapping[str, float]], effects: Mapping[str, Mapping[str, float]]
-    ) -> None:
+    def __init__(self, constants: Mapping[str, Mapping[str, float]], effects: Mapping[str, Mapping[str, float]]) -> None:
         beam, drive = constants["beam"], constants["drive"]
         self.n = int(beam["elements"])
         self.size = 1 + 2 * self.n

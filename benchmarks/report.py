@@ -80,6 +80,8 @@ def remarks(found: Mapping[str, Any]) -> list[str]:
             f"Reference: {found['reference']}.",
             f"Six effects: {', '.join(found['six_effects'])}; {found['six_ns']:.0f} ns a step; the median of "
             f"paired ratios is {found['six_over_base_median']:.2f}; DOP853 takes {found['six_dop853_s']:.0f} s.",
+            f"Ten such pulses on end, where the arm slides most of the time: {found['six_repeated_ns']:.0f} ns a step, "
+            f"{found['six_repeated_over_base']:.2f} × as long as with one element and base friction.",
         ]
     missed = [g.text.removeprefix("… ") for g in GOALS if g.figure in found and not g.met(found[g.figure])]
     lines.append(f"Missed: {'; '.join(missed)}." if missed else "Every goal that was measured is met.")

@@ -1,4 +1,4 @@
-"""Find where the model of a flexible arm fails against measurements, add what it lacks, and learn control on the result."""
+"""Find where the model of a flexible arm fails against measurements, and add what it lacks."""
 
 from __future__ import annotations
 

@@ -89,9 +89,7 @@ class Arm:
     def _check_needs(self, effect: type[Effect]) -> None:
         missing = [need for need in effect.needs if not self.has(need)]
         if missing:
-            raise InputError(
-                f"effect '{effect.name}' needs {' and '.join(missing)}, which arm '{self.name}' does not have"
-            )
+            raise InputError(f"effect '{effect.name}' needs {' and '.join(missing)}, which arm '{self.name}' does not have")
 
     def has(self, need: str) -> bool:
         """Whether the arm has a beam, a motor with an inertia of its own, or a sensor of that name."""
@@ -159,9 +157,7 @@ class Arm:
             motor_viscous_share=drive["motor_viscous_share"],
             gear_compliance=1.0 / drive["gear_stiffness"] if drive["gear_stiffness"] > 0.0 else 0.0,
             elements=int(beam.pop("elements", 0)),
-            sensors={
-                signal: Sensor(s["gain"], s["offset"], s["filter"], s["position"]) for signal, s in self.sensors.items()
-            },
+            sensors={signal: Sensor(s["gain"], s["offset"], s["filter"], s["position"]) for signal, s in self.sensors.items()},
             **beam,
         )
         for name, values in self.present():
@@ -199,9 +195,7 @@ def check_bounds(path: str, value: float, parameter: Parameter) -> float:
     """
     if not parameter.low <= value <= parameter.high:
         unit = f" {parameter.unit}" if parameter.unit else ""
-        raise InputError(
-            f"{path} = {value:g}{unit} is out of bounds: allowed are {parameter.low:g} to {parameter.high:g}{unit}"
-        )
+        raise InputError(f"{path} = {value:g}{unit} is out of bounds: allowed are {parameter.low:g} to {parameter.high:g}{unit}")
     return value
 
 

@@ -168,9 +168,7 @@ def _sensors(given: Mapping[str, Any], constants: Mapping[str, Mapping[str, floa
             unit = Parameter(sensor_unit(signal, key), SENSOR[key].low, SENSOR[key].high, 0.0)
             values[key] = _number(f"sensors.{signal}.{key}", value, unit)
         if bends and values["position"] > constants["beam"]["length"]:
-            raise InputError(
-                f"sensors.{signal}.position lies beyond the beam's end at {constants['beam']['length']:g} m"
-            )
+            raise InputError(f"sensors.{signal}.position lies beyond the beam's end at {constants['beam']['length']:g} m")
         sensors[signal] = values
     return sensors
 
@@ -187,9 +185,7 @@ def write_arm(arm: Arm, path: Path) -> None:
             file.write(text)
         os.replace(file.name, path)
     except OSError as error:
-        raise InputError(
-            f"cannot write {path}: {error.strerror}; name a folder that exists and can be written"
-        ) from None
+        raise InputError(f"cannot write {path}: {error.strerror}; name a folder that exists and can be written") from None
 
 
 def arm_text(arm: Arm) -> str:

@@ -58,9 +58,7 @@ DRIVE = {
         meaning="armature resistance (voltage drive only)",
         source="thesis App. A, experiment 1",
     ),
-    "limit": Parameter(
-        "", 0.0, 1e6, 5.0, spread=0.0, meaning="largest command, in A or V", source="thesis section 4.2"
-    ),
+    "limit": Parameter("", 0.0, 1e6, 5.0, spread=0.0, meaning="largest command, in A or V", source="thesis section 4.2"),
     "torque_noise": Parameter(
         "N*m", 0.0, 1e4, 0.0, spread=0.0, meaning="disturbance at the hub in each sample that no model need explain"
     ),
@@ -101,17 +99,11 @@ HUB = {
 }
 BEAM = {
     "elements": Parameter("", 1, 16, 1, spread=0.0, meaning="finite elements", source="thesis section 3.1"),
-    "length": Parameter(
-        "m", 1e-3, 1e2, 1.0, spread=0.0, meaning="from the hub's axis to the tip", source="thesis section 3.3"
-    ),
+    "length": Parameter("m", 1e-3, 1e2, 1.0, spread=0.0, meaning="from the hub's axis to the tip", source="thesis section 3.3"),
     "mass_per_length": Parameter("kg/m", 1e-6, 1e4, 0.42381, spread=0.15, source="thesis section 3.4"),
-    "bending_stiffness": Parameter(
-        "N*m**2", 1e-6, 1e8, 7.911324, spread=0.15, meaning="E times I", source="thesis section 3.4"
-    ),
+    "bending_stiffness": Parameter("N*m**2", 1e-6, 1e8, 7.911324, spread=0.15, meaning="E times I", source="thesis section 3.4"),
     "tip_mass": Parameter("kg", 0.0, 1e3, 0.0, spread=0.0, meaning="known mass at the tip"),
-    "tip_inertia": Parameter(
-        "kg*m**2", 0.0, 1e3, 0.0, spread=0.0, meaning="known inertia of the tip mass about the tip"
-    ),
+    "tip_inertia": Parameter("kg*m**2", 0.0, 1e3, 0.0, spread=0.0, meaning="known inertia of the tip mass about the tip"),
 }
 SECTIONS: dict[str, dict[str, Parameter]] = {"drive": DRIVE, "hub": HUB, "beam": BEAM}
 

@@ -220,9 +220,7 @@ class ReferenceArm:
             modes.append(sign)
         return self._result(np.array(states), np.array(modes), events, dt)
 
-    def _advance(
-        self, z: Array, mode: Mode, t: float, end: float, tolerance: tuple[float, float]
-    ) -> tuple[float, Array, bool]:
+    def _advance(self, z: Array, mode: Mode, t: float, end: float, tolerance: tuple[float, float]) -> tuple[float, Array, bool]:
         """Integrate one mode from t towards end [s]; stop at its first event. Returns (time, z, event?)."""
         limit = 1.0 / self._fastest  # a sixth of the fastest period: well below half of it
         from_rest = mode.sign != 0 and z[self.size] == 0.0
@@ -297,9 +295,7 @@ class ReferenceArm:
         }
 
 
-def _solver(
-    mode: Mode, t: float, z: Array, end: float, tolerance: tuple[float, float], first: float, limit: float
-) -> Any:
+def _solver(mode: Mode, t: float, z: Array, end: float, tolerance: tuple[float, float], first: float, limit: float) -> Any:
     rtol, atol = tolerance
     return DOP853(mode.slope, t, z, end, rtol=rtol, atol=atol, first_step=first, max_step=limit)
 

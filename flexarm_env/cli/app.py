@@ -32,9 +32,7 @@ Columns = Annotated[
 ]
 Effects = Annotated[
     list[str] | None,
-    typer.Option(
-        metavar="FILE.py:Name", help="An effect of your own, besides the catalogue; may be repeated. Runs FILE.py."
-    ),
+    typer.Option(metavar="FILE.py:Name", help="An effect of your own, besides the catalogue; may be repeated. Runs FILE.py."),
 ]
 Json = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for stdout.")]
 Report = Annotated[Path | None, typer.Option(metavar="FILE.html", help="Write a page with figures.")]
@@ -52,9 +50,7 @@ def _version(wanted: bool) -> None:
 
 @app.callback()
 def _all(
-    version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
-    ] = False,
+    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")] = False,
 ) -> None:
     pass
 
@@ -107,9 +103,7 @@ def diagnose(
 
 @app.command()
 def add(
-    effect: Annotated[
-        str, typer.Argument(metavar="EFFECT", help="Name in the catalogue, or FILE.py:Name of your own.")
-    ],
+    effect: Annotated[str, typer.Argument(metavar="EFFECT", help="Name in the catalogue, or FILE.py:Name of your own.")],
     recordings: Recordings,
     arm: ArmName = "thesis",
     columns: Columns = None,
@@ -176,9 +170,7 @@ def simulate(
 
 @app.command()
 def effects(
-    name: Annotated[
-        str | None, typer.Argument(metavar="[NAME]", help="An effect, or FILE.py:Name of your own.")
-    ] = None,
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="An effect, or FILE.py:Name of your own.")] = None,
     json: Json = None,
 ) -> None:
     """Show the catalogue of effects, or one effect: equation, parameters, what it looks like in data."""
@@ -190,9 +182,7 @@ def effects(
 
 @app.command()
 def demo(
-    output: Annotated[Path, typer.Option(metavar="FOLDER", help="Where pictures, page and numbers go.")] = Path(
-        "results/demo"
-    ),
+    output: Annotated[Path, typer.Option(metavar="FOLDER", help="Where pictures, page and numbers go.")] = Path("results/demo"),
     seed: Seed = 0,
     json: Json = None,
 ) -> None:
@@ -227,9 +217,7 @@ def _arm(name: str, specs: Sequence[str] | None) -> Arm:
     return Arm.load(name, inputs.known_effects(specs or []))
 
 
-def _load(
-    paths: list[Path], name: str, columns: Path | None, specs: Sequence[str] | None
-) -> tuple[Arm, list[Recording]]:
+def _load(paths: list[Path], name: str, columns: Path | None, specs: Sequence[str] | None) -> tuple[Arm, list[Recording]]:
     from flexarm_env.cli import inputs
 
     arm = _arm(name, specs)

@@ -63,9 +63,7 @@ def write_whole(path: Path, text: str) -> None:
     except OSError as error:
         if draft is not None:
             Path(draft).unlink(missing_ok=True)
-        raise InputError(
-            f"cannot write {path}: {error.strerror}; name a folder that exists and can be written"
-        ) from None
+        raise InputError(f"cannot write {path}: {error.strerror}; name a folder that exists and can be written") from None
 
 
 def write_json(path: Path | None, content: Mapping[str, Any]) -> None:

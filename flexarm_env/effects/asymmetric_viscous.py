@@ -14,9 +14,7 @@ class AsymmetricViscous(Effect):
     name = "asymmetric_viscous"
     equation = "T = ±a |ω|: a more while ω > 0, a less while ω < 0"
     parameters: ClassVar = {
-        "coefficient": Parameter(
-            "N*m*s", -1e5, 1e5, 0.03, null=0.0, meaning="half the difference of the two coefficients"
-        )
+        "coefficient": Parameter("N*m*s", -1e5, 1e5, 0.03, null=0.0, meaning="half the difference of the two coefficients")
     }
     modifies = "viscous"
     looks_like = "missing torque grows with speed, to the same side for both directions"

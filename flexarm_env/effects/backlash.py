@@ -15,9 +15,7 @@ class Backlash(Effect):
     name = "backlash"
     equation = "no torque through the gears while |θ_m − Nθ| < gap/2"
     parameters: ClassVar = {"gap": Parameter("rad", 0.0, 1.0, 0.03, null=0.0, meaning="full width, at the motor")}
-    looks_like = (
-        "at each reversal the motor runs free for a moment, then jolts; speed and strain ring where the gears meet"
-    )
+    looks_like = "at each reversal the motor runs free for a moment, then jolts; speed and strain ring where the gears meet"
     confused_with = ("gear_compliance", "input_delay")
     source = "thesis section 2.1; Nordin and Gutman, Automatica 38 (2002) 1633"
     needs = ("motor_speed", "motor_inertia")

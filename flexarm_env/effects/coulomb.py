@@ -13,9 +13,7 @@ class Coulomb(Effect):
 
     name = "coulomb"
     equation = "T = T_c sgn ω"
-    parameters: ClassVar = {
-        "torque": Parameter("N*m", 0.0, 1e4, 0.1, null=0.0, spread=0.5, meaning="sliding friction, arm side")
-    }
+    parameters: ClassVar = {"torque": Parameter("N*m", 0.0, 1e4, 0.1, null=0.0, spread=0.5, meaning="sliding friction, arm side")}
     looks_like = "the hub stops within a finite time and then sits still against a torque; missing torque is a step at zero speed"
     confused_with = ("stiction", "constant_torque", "asymmetric_coulomb", "position_friction")
     source = "thesis section 2.2 and Table A.1"

@@ -15,9 +15,7 @@ class GearCompliance(Effect):
 
     name = "gear_compliance"
     equation = "τ = k (θ_m/N − θ)"
-    parameters: ClassVar = {
-        "stiffness": Parameter("N*m/rad", 1.0, math.inf, 200.0, null=math.inf, meaning="k, arm side")
-    }
+    parameters: ClassVar = {"stiffness": Parameter("N*m/rad", 1.0, math.inf, 200.0, null=math.inf, meaning="k, arm side")}
     looks_like = "motor speed leads the arm by a fast vibration of its own"
     confused_with = ("backlash", "root_compliance", "higher_modes")
     source = "Spong, J. Dyn. Syst. Meas. Control 109 (1987) 310"

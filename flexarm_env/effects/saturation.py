@@ -14,9 +14,7 @@ class Saturation(Effect):
 
     name = "saturation"
     equation = "i = min(max(command, −limit), limit)"
-    parameters: ClassVar = {
-        "limit": Parameter("", 0.0, math.inf, 3.0, null=math.inf, meaning="largest output [A or V]")
-    }
+    parameters: ClassVar = {"limit": Parameter("", 0.0, math.inf, 3.0, null=math.inf, meaning="largest output [A or V]")}
     looks_like = "the answer to large commands is cut off, to small ones right"
     confused_with = ("rate_limit", "current_lag")
 

@@ -14,9 +14,7 @@ class Stiction(Effect):
     name = "stiction"
     equation = "T ≤ T_c + extra at ω = 0"
     parameters: ClassVar = {
-        "extra": Parameter(
-            "N*m", 0.0, 1e4, 0.05, null=0.0, spread=0.5, meaning="static less sliding friction, arm side"
-        )
+        "extra": Parameter("N*m", 0.0, 1e4, 0.05, null=0.0, spread=0.5, meaning="static less sliding friction, arm side")
     }
     modifies = "coulomb"
     looks_like = "the hub breaks away later than sliding friction says, and then jumps"

@@ -184,9 +184,7 @@ def _column_map(table: Mapping[str, Any]) -> ColumnMap:
         elif key not in _SETTINGS:
             raise InputError(f"[columns]: unknown key {key!r}{did_you_mean(str(key), (*UNITS, *_SETTINGS))}")
     if len(kinds) > 1:
-        raise InputError(
-            "[columns]: some entries have 'variable' (.mat) and some 'column' or 'index' (text); keep to one"
-        )
+        raise InputError("[columns]: some entries have 'variable' (.mat) and some 'column' or 'index' (text); keep to one")
     settings = {key: _typed(key, table[key], _SETTINGS[key]) for key in _SETTINGS if key in table}
     _check_settings(settings)
     try:

@@ -82,9 +82,7 @@ def _with_prior(path: str, value: float, spread: float, arm: Arm) -> list[Coordi
     return [Coordinate(path, value, 0.0, spread, parameter.low, parameter.high)]
 
 
-def effect_coordinates(
-    arm: Arm, name: str, scales: Mapping[str, float], nominal: Arm | None = None
-) -> list[Coordinate]:
+def effect_coordinates(arm: Arm, name: str, scales: Mapping[str, float], nominal: Arm | None = None) -> list[Coordinate]:
     """Return the coordinates of an effect's parameters around their present values.
 
     Args:
@@ -98,10 +96,7 @@ def effect_coordinates(
         return []
     found = []
     for key, parameter in effect.parameters.items():
-        if (
-            key in ("arm_angle", "motor_speed", "strain_mid", "strain_base", "tip_deflection")
-            and key not in arm.sensors
-        ):
+        if key in ("arm_angle", "motor_speed", "strain_mid", "strain_base", "tip_deflection") and key not in arm.sensors:
             continue  # an offset of a sensor that the arm does not have
         known = nominal is not None and name in nominal.effects
         value = nominal.value(f"effects.{name}.{key}") if known and nominal else arm.value(f"effects.{name}.{key}")

@@ -175,10 +175,7 @@ def _start(time: Floats, measured: Floats, signals: list[str], noise: Floats) ->
         return 0.0, 0.0
     column = signals.index("arm_angle")
     angle, sigma = measured[:, column], noise[column]
-    if np.abs(angle[:3]).max() < 4.0 * sigma:
-        still = 0.0
-    else:
-        still = float(angle[0])
+    still = 0.0 if np.abs(angle[:3]).max() < 4.0 * sigma else float(angle[0])
     first = angle[: min(len(angle), 20)]
     slope, level = np.polyfit(time[: len(first)], first, 1)
     moved = abs(slope) * time[len(first) - 1]

@@ -156,11 +156,7 @@ class _Search:
         now = measure(self.best)
         singles = [h for h in found if len(h.effects) == 1]
         winner = found[0]
-        if (
-            len(winner.effects) > 1
-            and singles
-            and measure(singles[0].score) <= (1.0 + LEAST_GAIN) * measure(winner.score)
-        ):
+        if len(winner.effects) > 1 and singles and measure(singles[0].score) <= (1.0 + LEAST_GAIN) * measure(winner.score):
             winner = singles[0]
         removed = now - measure(winner.score)
         lost = self.accepted and min(h.score.windows for h in found) > FAR_OFF
@@ -316,9 +312,7 @@ def _conclude(
     values = estimates(final, nominal)
     accepted = search.accepted if named else []
     steps = {name: search.steps[name] for name in accepted}
-    corrected = (
-        with_origin(arm, final.arm, values, recordings, "diagnose", seed) if verdict != "nothing_missing" else arm
-    )
+    corrected = with_origin(arm, final.arm, values, recordings, "diagnose", seed) if verdict != "nothing_missing" else arm
     ranking = []
     for name, (gain, found) in sorted(search.ranking.items(), key=lambda item: -item[1][0]):
         own = values if name in accepted else (estimates(found, nominal) if found else [])

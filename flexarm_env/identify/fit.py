@@ -46,9 +46,7 @@ def fit(arm: Arm, recordings: Sequence[Recording], progress: Progress | None = N
     )
 
 
-def add(
-    effect: str, arm: Arm, recordings: Sequence[Recording], progress: Progress | None = None, seed: int = 0
-) -> Addition:
+def add(effect: str, arm: Arm, recordings: Sequence[Recording], progress: Progress | None = None, seed: int = 0) -> Addition:
     """Add one effect to an arm and refit everything.
 
     Args:

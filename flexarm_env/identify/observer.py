@@ -38,8 +38,7 @@ def innovation_sigma(plant: Plant, noise: Floats, torque_noise: float, interval:
     transition, process = _process(plant, 0, noise, torque_noise, interval)
     output = plant.model.output
     covariance = _riccati(transition, output, process, noise)
-    sigma: Floats = np.sqrt(np.diag(output @ covariance @ output.T) + noise**2)
-    return sigma
+    return np.asarray(np.sqrt(np.diag(output @ covariance @ output.T) + noise**2), dtype=np.float64)
 
 
 def modal_gains(plant: Plant, physical: Floats) -> Floats:
@@ -81,7 +80,7 @@ def _gain(plant: Plant, mode: int, noise: Floats, torque_noise: float, interval:
     output = plant.model.output
     covariance = _riccati(transition, output, process, noise)
     seen = output @ covariance @ output.T + np.diag(noise**2)
-    gain: Floats = np.linalg.solve(seen, output @ covariance).T
+    gain = np.asarray(np.linalg.solve(seen, output @ covariance).T, dtype=np.float64)
     if not np.isfinite(gain).all():
         return np.zeros_like(gain)
     closed = transition - transition @ gain @ output

@@ -101,9 +101,7 @@ def score(arm: Arm, data: Data, held_out: bool = True) -> Score:
     count = 0
     for run in data.runs:
         rows = ~run.train if held_out else run.train
-        for i, replayed in enumerate(
-            (window_replay(plant, run, observers, data.noise, data.interval), replay(plant, run))
-        ):
+        for i, replayed in enumerate((window_replay(plant, run, observers, data.noise, data.interval), replay(plant, run))):
             scaled = (run.measured[rows] - replayed[rows]) / data.noise
             totals[i] += np.sum(np.nan_to_num(scaled, nan=1e6) ** 2)
         count += int(rows.sum()) * len(data.signals)

@@ -241,9 +241,7 @@ def _header(lines: Sequence[str], first: int, layout: ColumnMap) -> tuple[list[s
         by_index = layout.sources and all(isinstance(source.place, int) for source in layout.sources.values())
         if by_index and not mark:
             return [], last
-        raise InputError(
-            f"row {last + 1}: numbers where the header should be; write one such as 'time [s],current [A]'"
-        )
+        raise InputError(f"row {last + 1}: numbers where the header should be; write one such as 'time [s],current [A]'")
     if len(header) == 1:
         for other, word in ((";", "semicolons"), ("\t", "tabs")):
             if other in header[0]:
@@ -307,9 +305,7 @@ def _point(cell: str, decimal: str) -> str:
     return cell.translate({ord("."): "'", ord(","): "."}) if decimal == "," else cell
 
 
-def _numbers(
-    rows: list[str], lines: Sequence[int], labels: dict[int, str], width: int, layout: ColumnMap
-) -> NDArray[np.float64]:
+def _numbers(rows: list[str], lines: Sequence[int], labels: dict[int, str], width: int, layout: ColumnMap) -> NDArray[np.float64]:
     """Return the (n, len(labels)) numbers of the columns in `labels`.
 
     Args:

@@ -133,9 +133,7 @@ class Recording:
             raise InputError(f"{name}: {error}") from None
 
     @classmethod
-    def read(
-        cls, path: PathLike, columns: Columns | None = None, calibration: Mapping[str, float] | None = None
-    ) -> Recording:
+    def read(cls, path: PathLike, columns: Columns | None = None, calibration: Mapping[str, float] | None = None) -> Recording:
         """Return the recording in a CSV file, or by a column map in any text table or .mat file.
 
         Args:
@@ -188,9 +186,7 @@ class Recording:
         columns |= {name: self.signals[name] for name in SIGNALS if name in self.signals}
         if self.reference is not None:
             columns["reference"] = self.reference
-        remarks = [
-            f"# {name} = {value!r} {CONDITIONS.get(name, '')}".rstrip() for name, value in self.conditions.items()
-        ]
+        remarks = [f"# {name} = {value!r} {CONDITIONS.get(name, '')}".rstrip() for name, value in self.conditions.items()]
         header = ",".join(f"{name} [{UNITS[name]}]" for name in columns)
         rows = zip(*(map(repr, values.tolist()) for values in columns.values()), strict=True)
         _write_whole(Path(path), "\n".join([*remarks, header, *map(",".join, rows), ""]))
@@ -208,9 +204,7 @@ class Recording:
         first = int(np.searchsorted(self.time, start - slack))
         last = len(self) if stop is None else int(np.searchsorted(self.time, stop - slack))
         if last - first < 2:
-            raise InputError(
-                f"{self.name}: fewer than two samples from {start} to {stop} s; it lasts {self.duration:g} s"
-            )
+            raise InputError(f"{self.name}: fewer than two samples from {start} to {stop} s; it lasts {self.duration:g} s")
         cut = slice(first, last)
         before = self.conditions.get("start", 0.0) + float(self.time[first])
         return replace(

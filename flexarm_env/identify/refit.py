@@ -52,9 +52,7 @@ def free_coordinates(arm: Arm, nominal: Arm, data: Data) -> list[Coordinate]:
     return constants + [c for name in added for c in effect_coordinates(arm, name, data.scales)]
 
 
-def refit(
-    arm: Arm, nominal: Arm, data: Data, levels: Sequence[float] = LEVELS, iterations: int = 6, last: bool = True
-) -> Refit:
+def refit(arm: Arm, nominal: Arm, data: Data, levels: Sequence[float] = LEVELS, iterations: int = 6, last: bool = True) -> Refit:
     """Fit all coordinates of an arm through the levels, then at the arm's own torque noise.
 
     Args:

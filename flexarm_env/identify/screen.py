@@ -61,9 +61,7 @@ class Trial:
 
 def screening_base(found: Refit, data: Data) -> Base:
     """Return the refitted arm's residual and Jacobian at the level at which candidates are screened."""
-    torque_noise = max(
-        SCREENING_LEVEL * torque_scale(found.arm, data.runs), found.arm.constants["drive"]["torque_noise"]
-    )
+    torque_noise = max(SCREENING_LEVEL * torque_scale(found.arm, data.runs), found.arm.constants["drive"]["torque_noise"])
     problem = Problem(found.arm, data, found.coordinates, torque_noise, np.ones((len(data.runs), len(data.signals))))
     problem.sigma = rms_by_run(problem.errors_of(found.arm), data)
     x = position(found.arm, found.coordinates)

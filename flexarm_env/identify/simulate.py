@@ -135,9 +135,7 @@ def _scale(arm: Arm) -> float:
 
 def _plan(arm: Arm, experiment: str, time: Floats, seed: int) -> Plan:
     if experiment != "pulse" and "arm_angle" not in arm.sensors:
-        raise InputError(
-            f"input '{experiment}' needs the signal arm_angle, which arm '{arm.name}' does not measure; use pulse"
-        )
+        raise InputError(f"input '{experiment}' needs the signal arm_angle, which arm '{arm.name}' does not measure; use pulse")
     scale = _scale(arm)
     if experiment == "pulse":
         return Plan(scale * _pulses(time, seed), None)

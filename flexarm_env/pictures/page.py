@@ -112,9 +112,7 @@ def _estimates(found: Sequence[Estimate]) -> str:
 def _errors(result: Comparison) -> str:
     rows = [row for row in result.rows if row.recording == "all"] or result.rows
     names = {signal: label for signal, (label, _) in words.LABELS.items()}
-    cells = [
-        [f"{names.get(r.signal, r.signal)}, {r.part}", words.number(r.error), words.number(r.free_run)] for r in rows
-    ]
+    cells = [[f"{names.get(r.signal, r.signal)}, {r.part}", words.number(r.error), words.number(r.free_run)] for r in rows]
     return _table(["signal, part", "windows of 1 s", "free run"], cells)
 
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 import ast
 import hashlib
 import importlib.util
+import logging
 import inspect
 import os
 import sys
@@ -186,6 +187,8 @@ def _module(text: str) -> ModuleType:
     path = cache_folder() / f"{name}.py"
     if not path.exists():
         _write_whole(path, ast.unparse(_Compiled().visit(ast.parse(text))))
+    if not any((path.parent / "__pycache__").glob(f"{name}*.nbi")):
+        logging.getLogger(__name__).warning("Compiling the plant, once for these effects: about 20 s")
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None
     assert spec.loader is not None

@@ -150,17 +150,13 @@ def substep(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: i
                 respond(d, c0, c1, blocks, 0.5 * left, w, middle)
                 reach(d, n, mode, w, middle, w, own_reach)
                 reach(d, n, mode, w, end, w, own_reach + shift)
-            collocate(
-                d, n, s, mode, command, left, table, middle, table, shifts, w, trial, nodes, motion, force, coefficients
-            )
+            collocate(d, n, s, mode, command, left, table, middle, table, shifts, w, trial, nodes, motion, force, coefficients)
         else:
             constant_forcing(d, n, s, command, mode, w, force)
             evaluate_forces(d, n, s, mode, w, coefficients)
             add_forces(d, n, mode, w, coefficients, force)
         advance(d, c0, c1, blocks, table, end, s, w, force, n[VARYING], trial)
-        when, kind, which = next_event(
-            d, n, s, mode, command, w, trial, force, coefficients, sizes, min(blind, left), left
-        )
+        when, kind, which = next_event(d, n, s, mode, command, w, trial, force, coefficients, sizes, min(blind, left), left)
         if kind == NOTHING:
             when = left
         elif when > 0.0:

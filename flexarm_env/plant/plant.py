@@ -28,9 +28,7 @@ class Plant:
         interval: sampling time [s].
     """
 
-    def __init__(
-        self, structure: Structure, active: Sequence[ActiveLaw], catalogue: Sequence[Law], interval: float
-    ) -> None:
+    def __init__(self, structure: Structure, active: Sequence[ActiveLaw], catalogue: Sequence[Law], interval: float) -> None:
         self.kernel: Any = compose(catalogue)
         model = assemble(structure)
         self.model = model

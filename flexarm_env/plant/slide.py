@@ -392,9 +392,7 @@ def slide(
             mesh_bend += d[mesh_weight + k] * bend
     if not keeps(d, n, s, mode, 0, hub_before, hub_after, hub_bend, moves, tab, bends, w, inputs, changes):
         return False
-    if bodies == 2 and not keeps(
-        d, n, s, mode, 1, motor_before, motor_after, motor_bend, moves, tab, bends, w, inputs, changes
-    ):
+    if bodies == 2 and not keeps(d, n, s, mode, 1, motor_before, motor_after, motor_bend, moves, tab, bends, w, inputs, changes):
         return False
     if d[GAP] > 0.0:
         held = held_motor - held_hub  # held angles of free bodies are 0

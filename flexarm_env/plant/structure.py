@@ -104,9 +104,7 @@ def assemble(structure: Structure) -> LinearModel:
     beam = Beam(s.elements, s.length, s.mass_per_length, s.bending_stiffness) if s.elements else None
     # a beam coordinate stands where its own numbering puts it, the root's slope only if it can turn
     kept = [] if beam is None else ([1] if s.root_compliance > LEAST_COMPLIANCE else []) + list(range(2, beam.size))
-    names += (
-        [] if beam is None else (["root"] if s.root_compliance > LEAST_COMPLIANCE else []) + _node_names(s.elements)
-    )
+    names += [] if beam is None else (["root"] if s.root_compliance > LEAST_COMPLIANCE else []) + _node_names(s.elements)
     place = np.array([0, *range(len(names) - len(kept), len(names))], dtype=int)
     size = len(names)
     mass, damping, stiffness = (np.zeros((size, size)) for _ in range(3))

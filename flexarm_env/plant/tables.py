@@ -103,9 +103,7 @@ def split_delay(delay: float, interval: float) -> tuple[int, float]:
     return whole, rest if rest > 1e-9 * interval else 0.0
 
 
-def _record(
-    model: LinearModel, mode: Mode, which: int, bodies: int, points: int, blocks: int, reach: int
-) -> dict[int, Matrix]:
+def _record(model: LinearModel, mode: Mode, which: int, bodies: int, points: int, blocks: int, reach: int) -> dict[int, Matrix]:
     size = len(model.names)
     torques = [HUB_TORQUE, MOTOR_TORQUE][:bodies]
     physical = _wide(mode.physical, blocks)

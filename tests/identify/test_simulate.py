@@ -129,9 +129,7 @@ def test_a_loop_replays_to_itself_when_clocks_differ(arm, offset):
 
 def test_a_dead_time_shifts_readings(arm):
     late, half = with_sensors(arm, delay=0.01), with_sensors(arm, delay=0.011)
-    now, then, between = (
-        simulate(a, "pulse", duration=2.0, noise=False).signals["arm_angle"] for a in (arm, late, half)
-    )
+    now, then, between = (simulate(a, "pulse", duration=2.0, noise=False).signals["arm_angle"] for a in (arm, late, half))
     assert (then[5:] == now[:-5]).all()
     assert (then[:5] == now[0]).all()
     assert between[6:] == pytest.approx(0.5 * (now[:-6] + now[1:-5]), abs=1e-15)

@@ -171,9 +171,7 @@ def beam_forces(s: np.ndarray, eta: np.ndarray, rate: np.ndarray, p: np.void, be
 
 
 @njit(cache=True)
-def step(
-    s: np.ndarray, eta: np.ndarray, rate: np.ndarray, p: np.void, beam: Beam, current: float, force: np.ndarray
-) -> None:
+def step(s: np.ndarray, eta: np.ndarray, rate: np.ndarray, p: np.void, beam: Beam, current: float, force: np.ndarray) -> None:
     """Advance the mechanics by one step of `p.h` seconds, in place."""
     m, half = beam[0], 0.5 * p.h
     s[TIME] += half
