@@ -13,8 +13,8 @@ from __future__ import annotations
 import ast
 import hashlib
 import importlib.util
-import logging
 import inspect
+import logging
 import os
 import sys
 import tempfile
