@@ -81,7 +81,7 @@ def load_effect(spec: str) -> type[Effect]:
     Raises:
         InputError: for a file or class that is not there, or a class that is no effect.
     """
-    from joblib.externals import cloudpickle
+    import cloudpickle
 
     path_text, _, name = spec.rpartition(":")
     path = Path(path_text)

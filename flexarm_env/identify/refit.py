@@ -127,6 +127,22 @@ def at_solution(found: Refit) -> Refit:
     return replace(found, solution=solution)
 
 
+def _scale_spread(found: Refit) -> float:
+    """Return the relative standard deviation of the common scale of torques, inertias and stiffness.
+
+    Motion and the ratio of strain to its gain are the same on every scale, so that only the priors hold it, together.
+    """
+    free = [c for c in found.coordinates if not c.scale and _has_force(c.path, found)]
+    if not any(c.path == "drive.torque_constant" for c in free):
+        return 0.0
+    return float(np.sum([c.prior**-2.0 for c in free]) ** -0.5)
+
+
+def _has_force(path: str, found: Refit) -> bool:
+    unit = found.arm.parameter(path).unit
+    return "N" in unit or "kg" in unit
+
+
 def estimates(found: Refit, nominal: Arm) -> list[Estimate]:
     """Return every fitted value with its 90 % interval.
 
@@ -137,10 +153,12 @@ def estimates(found: Refit, nominal: Arm) -> list[Estimate]:
     block = max(int(BLOCK / found.problem.data.interval), 1) * len(found.problem.data.signals)
     spread = covariance(found.solution.jacobian, found.solution.residual, prior, block)
     variance = np.maximum(np.diag(spread), 0.0) + (0.0 if found.moved is None else found.moved**2)
-    least = [
-        BEST_MODEL * (abs(c.value(float(x))) / c.scale if c.scale else 1.0)
-        for c, x in zip(found.coordinates, found.solution.x, strict=True)
+    common = _scale_spread(found)
+    relative = [np.hypot(BEST_MODEL, common if _has_force(c.path, found) else 0.0) for c in found.coordinates]
+    sizes = [
+        abs(c.value(float(x))) / c.scale if c.scale else 1.0 for c, x in zip(found.coordinates, found.solution.x, strict=True)
     ]
+    least = np.array(relative) * np.array(sizes)
     sigma = np.sqrt(variance + np.square(least))
     out = []
     for c, x, s in zip(found.coordinates, found.solution.x, sigma, strict=True):

@@ -13,7 +13,7 @@ import plotly.offline
 from numpy.typing import NDArray
 from plotly.subplots import make_subplots
 
-import flexarm_env
+from flexarm_env import __version__
 from flexarm_env.identify.results import Comparison, Diagnosis, Estimate, Replay
 from flexarm_env.pictures import words
 from flexarm_env.pictures.style import AFTER, BEFORE, INK, MEASURED, QUIET
@@ -57,7 +57,7 @@ def _document(title: str, parts: Sequence[str]) -> str:
         f'<meta name="viewport" content="width=device-width"><style>{_CSS}</style>'
         f"<script>{plotly.offline.get_plotlyjs()}</script></head>\n<body><h1>{escape(title)}</h1>\n"
         + "\n".join(parts)
-        + f"\n<footer>FlexArm {flexarm_env.__version__}</footer></body></html>\n"
+        + f"\n<footer>FlexArm {__version__}</footer></body></html>\n"
     )
 
 

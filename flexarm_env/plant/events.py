@@ -32,8 +32,8 @@ from flexarm_env.plant.propagate import dot
 from flexarm_env.plant.stick_slip import applied_offset, is_stuck, record, rubs, static_budget
 
 GEAR_OPEN = 4
-# events: none, a body that stops, a held body that breaks away, gears that part or meet
-NOTHING, STOP, BREAK, GEARS = 0, 1, 2, 3
+# events: none, a body that stops, a held body that breaks away, gears that part or meet, a moment to look afresh
+NOTHING, STOP, BREAK, GEARS, AGAIN = 0, 1, 2, 3, 4
 
 
 @njit
@@ -105,6 +105,29 @@ def look_at_gears(
 
 
 @njit
+def look_at_overlap(
+    d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, trial: int, force: int, size: int,
+    start: float, end: float, side: float, best: float,
+) -> float:  # fmt: skip
+    """Return when teeth that parted while they overlapped are clear of each other; else `best`."""
+    if not mode & GEAR_OPEN:
+        return best
+    held = 0.0
+    if is_stuck(mode, 1):
+        held += s[HELD_MOTOR]
+    if is_stuck(mode, 0):
+        held -= s[HELD_HUB]
+    here = record(n, mode)
+    edge = side * held - 0.5 * d[GAP]
+    if side * dot(d, here + n[WINDUP], s, HEADER, 2 * n[BLOCKS]) + edge <= 0.0:
+        return best
+    return look(
+        d, n, mode, here + n[WINDUP], here + n[WINDUP_WEIGHT], side, edge, 0.0, 0.0,
+        s, w, trial, force, size, start, end, best,
+    )  # fmt: skip
+
+
+@njit
 def next_event(
     d: Numbers, n: Places, s: Numbers, mode: int, command: float, w: Numbers, trial: int, force: int,
     coefficients: int, size: int, start: float, end: float,
@@ -144,4 +167,7 @@ def next_event(
         when = look_at_gears(d, n, s, mode, w, trial, force, size, start, end, gear_side, best)
         if when < best:
             best, kind, which = when, GEARS, gear_side
+        when = look_at_overlap(d, n, s, mode, w, trial, force, size, start, end, gear_side, best)
+        if when < best:
+            best, kind, which = when, AGAIN, gear_side
     return best, kind, which

@@ -6,7 +6,7 @@ import math
 
 from numba import njit
 
-from flexarm_env.plant.events import GEAR_OPEN, GEARS, NOTHING, next_event
+from flexarm_env.plant.events import AGAIN, GEAR_OPEN, GEARS, NOTHING, next_event
 from flexarm_env.plant.glide import glide
 from flexarm_env.plant.laws import drive_law
 from flexarm_env.plant.layout import (
@@ -96,6 +96,8 @@ def happen(
 ) -> None:  # fmt: skip
     """Let an event take place."""
     mode = int(s[MODE])
+    if kind == AGAIN:
+        return
     to_physical(d, n, s, mode, w, physical)
     if kind != GEARS:
         settle(d, n, s, int(which), command, w, physical, coefficients)

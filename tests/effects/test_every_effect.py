@@ -75,7 +75,7 @@ def test_it_says_what_it_is(name):
         assert text
         assert text.strip()
     assert set(effect.confused_with) <= set(NAMES) - {name}
-    assert set(effect.needs) <= {"beam", *SIGNALS}
+    assert set(effect.needs) <= {"beam", "motor_inertia", *SIGNALS}
 
 
 @pytest.mark.parametrize("name", NAMES)
