@@ -45,7 +45,7 @@ def compare(arm: Arm, recordings: Sequence[Recording], progress: Progress | None
         if progress:
             progress(i / len(data.runs), f"replaying {run.name}")
         windows = window_replay(plant, run, observers, data.noise, data.interval)
-        free = replay(plant, run)
+        free = replay(plant, run, data.noise)
         replays.append(_replay(run, data.signals, free, windows, regimes(plant, run, free, data)))
     rows = list(_rows(replays, data))
     whole = rows[-1]

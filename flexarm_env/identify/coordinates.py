@@ -39,10 +39,15 @@ class Coordinate:
     low: float
     high: float
 
+    @property
+    def is_constant(self) -> bool:
+        """Whether the value is known but for a spread, unlike that of an effect that is added."""
+        return not self.scale and self.prior < 1.0
+
     def step(self, x: float) -> float:
         """Return a step of x that a replay resolves: stick-slip makes smaller ones of an effect look like noise."""
         if not self.scale:
-            return BASE_STEP if self.prior < 1.0 else EFFECT_STEP
+            return BASE_STEP if self.is_constant else EFFECT_STEP
         return EFFECT_STEP * max(abs(self.value(x)) / self.scale, 0.3)
 
     def value(self, x: float) -> float:

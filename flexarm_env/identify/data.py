@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 from flexarm_env.identify.recording import Recording
+from flexarm_env.identify.start import Start, find_start, place_at_start
 from flexarm_env.plant.plant import NO_INTERVALS, Plant
 from flexarm_env.signals import INPUTS
 
@@ -37,9 +38,7 @@ class Run:
     measured: Floats
     intervals: Floats
     train: NDArray[np.bool_]
-    angle: float
-    speed: float
-    bent: Floats  # beam signals at the start, or zeros
+    start: Start
 
 
 @dataclass(frozen=True)
@@ -152,10 +151,6 @@ def _run(recording: Recording, measured: Floats, signals: list[str], noise: Floa
     steps = np.diff(time)
     uneven = np.abs(steps - interval).max() > 1e-3 * interval
     train = time < (1.0 - HELD_OUT) * time[-1]
-    angle, speed = _start(time, measured, signals, noise)
-    beam = np.array([s.startswith("strain") or s == "tip_deflection" for s in signals])
-    first = measured[: max(2, int(0.004 / interval))].mean(axis=0)
-    bent = np.where(beam & (np.abs(first) > 6.0 * noise), first, 0.0)
     return Run(
         name=recording.name,
         time=time,
@@ -163,53 +158,10 @@ def _run(recording: Recording, measured: Floats, signals: list[str], noise: Floa
         measured=np.ascontiguousarray(measured),
         intervals=np.append(steps, interval) if uneven else NO_INTERVALS,
         train=train,
-        angle=angle,
-        speed=speed,
-        bent=bent,
+        start=find_start(time, measured, signals, noise),
     )
 
 
-def _start(time: Floats, measured: Floats, signals: list[str], noise: Floats) -> tuple[float, float]:
-    """Angle and speed at the start: zero where the first samples allow it, else the line through them."""
-    if "arm_angle" not in signals:
-        return 0.0, 0.0
-    column = signals.index("arm_angle")
-    angle, sigma = measured[:, column], noise[column]
-    still = 0.0 if np.abs(angle[:3]).max() < 4.0 * sigma else float(angle[0])
-    first = angle[: min(len(angle), 20)]
-    slope, level = np.polyfit(time[: len(first)], first, 1)
-    moved = abs(slope) * time[len(first) - 1]
-    if moved > 6.0 * sigma and "motor_speed" not in signals:
-        return float(level), float(slope)
-    at_rest = np.abs(angle - angle[0]) < 5.0 * sigma
-    length = len(angle) if at_rest.all() else int(np.argmin(at_rest))
-    if still != 0.0 and length > 3:
-        still = float(angle[: max(length // 2, 3)].mean())
-    return still, 0.0
-
-
-def place(plant: Plant, run: Run) -> None:
+def place(plant: Plant, run: Run, noise: Floats) -> None:
     """Put the plant where a run starts."""
-    model = plant.model
-    start = np.zeros(plant.states)
-    size = len(model.names)
-    bodies = plant.bodies
-    start[:bodies] = run.angle
-    start[size : size + bodies] = run.speed
-    if np.any(run.bent) and size > bodies:
-        rows = model.output[:, bodies:size]
-        shape = _first_clamped_shape(model.mass[bodies:, bodies:], model.stiffness[bodies:, bodies:])
-        reading = rows @ shape
-        used = (run.bent != 0.0) & (reading != 0.0)
-        if not used.any():
-            plant.place(start, command=float(run.command[0]))
-            return
-        start[bodies:size] = shape * (reading[used] @ run.bent[used]) / (reading[used] @ reading[used])
-    plant.place(start, command=float(run.command[0]))
-
-
-def _first_clamped_shape(mass: Floats, stiffness: Floats) -> Floats:
-    from scipy.linalg import eigh
-
-    _, shapes = eigh(stiffness, mass, subset_by_index=[0, 0])
-    return np.asarray(shapes[:, 0])
+    place_at_start(plant, run.start, run.command, run.intervals, run.measured, noise)

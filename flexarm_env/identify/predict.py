@@ -16,9 +16,9 @@ Floats = NDArray[np.float64]
 WINDOW_LEVELS = (1e-4, 2e-3, 2e-2)
 
 
-def replay(plant: Plant, run: Run, physical: Floats | None = None) -> Floats:
+def replay(plant: Plant, run: Run, noise: Floats, physical: Floats | None = None) -> Floats:
     """Return the readings (samples, signals) of a replay from the run's start, nudged by physical gains if there are any."""
-    place(plant, run)
+    place(plant, run, noise)
     if physical is None:
         return plant.replay(run.command, run.intervals, NO_GAINS, NOT_MEASURED)
     return plant.replay(run.command, run.intervals, modal_gains(plant, physical), run.measured)
@@ -43,7 +43,7 @@ def window_replay(plant: Plant, run: Run, observers: list[Floats], noise: Floats
     out = np.empty_like(run.measured)
     command = plant.delayed(run.command)
     for gains in observers:
-        place(plant, run)
+        place(plant, run, noise)
         for w, start in enumerate(starts):
             part = slice(start, start + length + 1)
             intervals = run.intervals[part] if len(run.intervals) else run.intervals

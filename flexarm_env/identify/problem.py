@@ -19,6 +19,8 @@ Floats = NDArray[np.float64]
 
 #: A residual larger than this many of its standard deviations counts as this: one bad moment must not rule a fit.
 LARGEST_RESIDUAL = 1e4
+#: Time [s] over which the errors of a model that is far off hang together.
+MEMORY = 0.02
 
 
 @dataclass
@@ -43,6 +45,22 @@ class Problem:
 
     def __post_init__(self) -> None:
         self._gains: dict[tuple[int, int], Floats] = {}
+        self.prior = np.array([c.prior for c in self.coordinates])
+
+    def weigh(self, arm: Arm, held: bool = True) -> None:
+        """Divide errors by what they are for an arm; and hold constants the closer to their priors the less is explained.
+
+        Errors that a model cannot explain hang together: those of one moment count once, however many samples there are.
+        Without that a search strays to constants that no machine has.
+
+        Args:
+            arm: whose errors are the measure.
+            held: whether priors are narrowed so.
+        """
+        self.sigma = rms_by_run(self.errors_of(arm), self.data)
+        unexplained = (1.0 - 1.0 / np.mean((self.sigma / self.data.noise) ** 2)) if held else 0.0
+        together = 1.0 + unexplained * max(MEMORY / self.data.interval - 1.0, 0.0)
+        self.prior = np.array([c.prior / (np.sqrt(together) if c.is_constant else 1.0) for c in self.coordinates])
 
     def residual(self, x: Floats) -> Floats:
         """Return (rows,): errors over sigma, run by run, sample by sample, signal by signal."""
@@ -63,7 +81,7 @@ class Problem:
     def _errors(self, arm: Arm, runs: Sequence[Run]) -> list[Floats]:
         plant = arm.plant(self.data.interval)
         gains = self._gains_for(plant) if self.torque_noise > 0.0 else None
-        return [run.measured - replay(plant, run, gains) for run in runs]
+        return [run.measured - replay(plant, run, self.data.noise, gains) for run in runs]
 
     def _gains_for(self, plant: Plant) -> Floats:
         key = (plant.modes, plant.states)
@@ -101,7 +119,9 @@ def score(arm: Arm, data: Data, held_out: bool = True) -> Score:
     count = 0
     for run in data.runs:
         rows = ~run.train if held_out else run.train
-        for i, replayed in enumerate((window_replay(plant, run, observers, data.noise, data.interval), replay(plant, run))):
+        for i, replayed in enumerate(
+            (window_replay(plant, run, observers, data.noise, data.interval), replay(plant, run, data.noise))
+        ):
             scaled = (run.measured[rows] - replayed[rows]) / data.noise
             totals[i] += np.sum(np.nan_to_num(scaled, nan=1e6) ** 2)
         count += int(rows.sum()) * len(data.signals)
@@ -116,8 +136,8 @@ def _score_innovations(arm: Arm, plant: Plant, data: Data, torque_noise: float, 
     count = 0
     for run in data.runs:
         rows = ~run.train if held_out else run.train
-        nudged = (run.measured - replay(plant, run, gains)) / sigma
-        free = (run.measured - replay(plant, run)) / data.noise
+        nudged = (run.measured - replay(plant, run, data.noise, gains)) / sigma
+        free = (run.measured - replay(plant, run, data.noise)) / data.noise
         totals += [np.sum(np.nan_to_num(part[rows], nan=1e6) ** 2) for part in (nudged, free)]
         count += int(rows.sum()) * len(data.signals)
     innovations, free_run = np.sqrt(totals / count)

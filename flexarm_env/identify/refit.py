@@ -52,7 +52,7 @@ def free_coordinates(arm: Arm, nominal: Arm, data: Data) -> list[Coordinate]:
     return constants + [c for name in added for c in effect_coordinates(arm, name, data.scales)]
 
 
-def refit(arm: Arm, nominal: Arm, data: Data, levels: Sequence[float] = LEVELS, iterations: int = 6, last: bool = True) -> Refit:
+def refit(arm: Arm, nominal: Arm, data: Data, levels: Sequence[float] = LEVELS, iterations: int = 6, held: bool = True) -> Refit:
     """Fit all coordinates of an arm through the levels, then at the arm's own torque noise.
 
     Args:
@@ -61,19 +61,17 @@ def refit(arm: Arm, nominal: Arm, data: Data, levels: Sequence[float] = LEVELS, 
         data: the recordings.
         levels: of process noise, over the rms of the drive's torque.
         iterations: for each level.
-        last: whether to end with the arm's own torque noise (none: free replays).
+        held: whether constants are held close to their priors while the model is far off.
     """
     scale, own = torque_scale(arm, data.runs), arm.constants["drive"]["torque_noise"]
     noises = [level * scale for level in levels if level * scale > own]
-    if last:  # twice, since the first pass weighs the signals by errors that it then removes
-        noises += [own] * 2
+    noises += [own] * 2  # twice, since the first pass weighs the signals by errors that it then removes
     coordinates = free_coordinates(arm, nominal, data)
     x = position(arm, coordinates)
-    prior = np.array([c.prior for c in coordinates])
     for noise in noises:
         problem = Problem(arm, data, coordinates, noise, np.ones((len(data.runs), len(data.signals))))
-        problem.sigma = rms_by_run(problem.errors_of(place_values(arm, coordinates, x)), data)
-        solution = minimise(problem.residual, x, prior, steps_at(coordinates, x), iterations)
+        problem.weigh(place_values(arm, coordinates, x), held)
+        solution = minimise(problem.residual, x, problem.prior, steps_at(coordinates, x), iterations)
         x = solution.x
     return Refit(place_values(arm, coordinates, x), coordinates, solution, problem)
 
@@ -109,7 +107,7 @@ def polish(found: Refit, nominal: Arm, data: Data) -> Refit:
 
 def with_all(found: Refit, nominal: Arm, data: Data) -> Refit:
     """Return the refit gone on with on all of the data: what is kept once nothing is to be judged any more."""
-    whole = refit(found.arm, nominal, everything(data), ())
+    whole = refit(found.arm, nominal, everything(data), (), held=False)
     return replace(whole, moved=whole.solution.x - position(found.arm, whole.coordinates))
 
 

@@ -12,7 +12,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.coordinates import effect_coordinates, place_values, position, steps_at
 from flexarm_env.identify.data import Data, torque_scale
 from flexarm_env.identify.least_squares import jacobian, minimise
-from flexarm_env.identify.problem import Problem, rms_by_run
+from flexarm_env.identify.problem import Problem
 from flexarm_env.identify.refit import Refit, as_it_is, polish, refit
 
 Floats = NDArray[np.float64]
@@ -63,11 +63,11 @@ def screening_base(found: Refit, data: Data) -> Base:
     """Return the refitted arm's residual and Jacobian at the level at which candidates are screened."""
     torque_noise = max(SCREENING_LEVEL * torque_scale(found.arm, data.runs), found.arm.constants["drive"]["torque_noise"])
     problem = Problem(found.arm, data, found.coordinates, torque_noise, np.ones((len(data.runs), len(data.signals))))
-    problem.sigma = rms_by_run(problem.errors_of(found.arm), data)
+    problem.weigh(found.arm)
     x = position(found.arm, found.coordinates)
     residual = problem.residual(x)
     slopes = jacobian(problem.residual, x, residual, steps_at(found.coordinates, x))
-    prior = np.diag([1.0 / c.prior for c in found.coordinates])
+    prior = np.diag(1.0 / problem.prior)
     orthonormal = np.linalg.qr(np.vstack([slopes, prior]))[0][: len(residual)]
     return Base(problem, x, residual, slopes, orthonormal)
 
@@ -150,7 +150,7 @@ def attempt(base: Base, signature: Signature | None) -> Trial:
     added = effect_coordinates(arm, name, base.problem.data.scales) if name else []
     coordinates = [*base.problem.coordinates, *added]
     problem = Problem(arm, base.problem.data, coordinates, base.problem.torque_noise, base.problem.sigma)
-    prior = np.array([c.prior for c in coordinates])
+    prior = np.concatenate([base.problem.prior, [c.prior for c in added]])
     x = np.concatenate([base.x, position(arm, added)])
     steps = steps_at(coordinates, x)
     solution = minimise(problem.residual, x, prior, steps, ITERATIONS, frozen=base.jacobian, tolerance=1e-3)
