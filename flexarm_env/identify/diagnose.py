@@ -117,6 +117,8 @@ class _Search:
             if self.best.windows < PERFECT:
                 break
         self._drop_useless()
+        if OFFSET in self.accepted and self.equivalent[self.accepted.index(OFFSET)] == [OFFSET]:
+            self._swap_offset()
 
     def _add_one(self, done: float, share: float) -> bool:
         worth = self.best.windows >= PERFECT
@@ -254,6 +256,31 @@ class _Search:
                 self.found, self.best = without, value
                 place = self.accepted.index(effect)
                 del self.accepted[place], self.equivalent[place], self.steps[effect]
+
+    def _swap_offset(self) -> None:
+        """Put what a constant torque is confused with in its place, which came in beside another effect, untried."""
+        place = self.accepted.index(OFFSET)
+        without = self.found.arm.without_effect(OFFSET)
+        lacking = candidates(without)
+        rivals = [(name,) for name in without.known[OFFSET].confused_with if name in lacking]
+        arms = [without.with_effect(name) for (name,) in rivals]
+        found = self._refit_all(rivals, arms, 0.9, 0.05, thorough=False)
+        found = [h for h in found if not _at_bound(h)]
+        measure = _measure([self.best, *(h.score for h in found)])
+        level = measure(self.best) + SAME_GAIN * (measure(self.first) - measure(self.best))
+        best = min(found, key=lambda h: measure(h.score), default=None)
+        same = [h.effects[0] for h in found if measure(h.score) <= level]
+        if best is None or measure(best.score) >= measure(self.best):
+            self.equivalent[place] += same
+            return
+        name, before = best.effects[0], self.best
+        self.found, self.best, self.accepted[place] = best.refit, best.score, name
+        also = (
+            [OFFSET] if measure(before) <= measure(best.score) + SAME_GAIN * (measure(self.first) - measure(best.score)) else []
+        )
+        self.equivalent[place] = [name, *also, *(other for other in same if other != name)]
+        self.steps[name] = best.score
+        del self.steps[OFFSET]
 
 
 def _try_effect(base: Base, name: str) -> list[Trial]:
