@@ -1,0 +1,8 @@
+"""The arm seen from above, with its command and its strain: for people to watch, as a window or as pixels."""
+
+from __future__ import annotations
+
+from flexarm_env.render.renderer import Renderer
+from flexarm_env.render.scene import Scene, beam_shape
+
+__all__ = ["Renderer", "Scene", "beam_shape"]
