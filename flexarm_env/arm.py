@@ -14,6 +14,7 @@ from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.parameters import SECTIONS, SENSOR, Parameter, sensor_unit
 
 if TYPE_CHECKING:
+    from flexarm_env.linear import LinearArm
     from flexarm_env.plant.plant import Plant
     from flexarm_env.plant.structure import Structure
 
@@ -185,6 +186,12 @@ class Arm:
                     share = self.constants["drive"][effect.motor_share] if effect.motor_share else 0.0
                     active.append(ActiveLaw(self.known.kinds[name, port], port, parameters, varies, share))
         return Plant(self.structure(), active, self.known.laws, interval)
+
+    def linearise(self, mode: str, interval: float) -> LinearArm:
+        """Return the state space of the arm in a mode, "moving" or "stuck", sampled every `interval` seconds."""
+        from flexarm_env.linear import linearise
+
+        return linearise(self, mode, interval)
 
 
 def check_bounds(path: str, value: float, parameter: Parameter) -> float:

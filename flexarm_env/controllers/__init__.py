@@ -1,0 +1,92 @@
+"""Controllers by name: the thesis's and those that it leaves for future work."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from flexarm_env.arm import Arm
+from flexarm_env.controllers.base import Controller
+from flexarm_env.controllers.filtered import FilteredVibrationSuppression
+from flexarm_env.controllers.lqg import LQG
+from flexarm_env.controllers.pd import PD, RateLimitedPD
+from flexarm_env.controllers.scheduled import ScheduledLQG
+from flexarm_env.controllers.shaping import ShapedPD
+from flexarm_env.controllers.vibration import TORQUE_PER_STRAIN, VibrationSuppression
+from flexarm_env.errors import InputError, did_you_mean
+
+
+class Recipe(NamedTuple):
+    """A controller's class, its options where they differ from the class's defaults, and one line for a person."""
+
+    build: type[Controller]
+    options: Mapping[str, Any]
+    meaning: str
+
+
+CONTROLLERS: dict[str, Recipe] = {
+    "pd": Recipe(PD, {}, "the thesis's PD (section 2.3)"),
+    "pd_rate_limited": Recipe(RateLimitedPD, {}, "PD whose command ramps (Fig. 2.8)"),
+    "vibration_dual": Recipe(
+        VibrationSuppression, {}, "PD, K_mo = −1 at high speed, +1 and friction compensation at low (Fig. 4.16)"
+    ),
+    "vibration_dual_plain": Recipe(
+        VibrationSuppression, {"friction_compensation": False}, "the same without friction compensation"
+    ),
+    "vibration_high": Recipe(
+        VibrationSuppression, {"low_gain": 0.0, "friction_compensation": False}, "PD, K_mo = −1 at high speed only (Fig. 4.18)"
+    ),
+    "vibration_low": Recipe(
+        VibrationSuppression, {"high_gain": 0.0}, "PD, K_mo = +1 with compensation at low speed only (Fig. 4.17)"
+    ),
+    "vibration_practical": Recipe(
+        VibrationSuppression,
+        {"low_gain": 0.0, "friction_compensation": False, "torque_per_strain": TORQUE_PER_STRAIN},
+        "PD, K_mo = −1 at high speed only, mid-beam strain × 1.18 for M_o (Fig. 4.21)",
+    ),
+    # −1 cancels the beam's torque whole, which leaves a finer arm than the thesis's swinging at the delay of a sample; the
+    # window is ten times the thesis's, because compensating friction is left out and both gains damp around it
+    "vibration_filtered": Recipe(
+        FilteredVibrationSuppression,
+        {"high_gain": -0.7, "low_gain": 0.5, "low_speed": 0.3, "friction_compensation": False},
+        "PD, K_mo by speed on estimated strain and speed, without a filter's lag (chapter 5)",
+    ),
+    "shaped_zv": Recipe(ShapedPD, {"shaper": "zv"}, "PD, target shaped for zero vibration"),
+    "shaped_zvd": Recipe(ShapedPD, {"shaper": "zvd"}, "PD, target shaped for zero vibration and derivative"),
+    "lqg": Recipe(LQG, {}, "Kalman filter, linear-quadratic regulator, estimated friction opposed"),
+    "lqg_scheduled": Recipe(ScheduledLQG, {}, "LQG with gains by the payload that the stuck arm's frequency shows"),
+}
+
+
+def make_controller(name: str, arm: Arm, interval: float, **options: Any) -> Controller:
+    """Return a controller by name.
+
+    Args:
+        name: one of CONTROLLERS.
+        arm: what the controller believes the arm to be.
+        interval: control period [s].
+        options: of the controller's class, over those of its recipe.
+
+    Raises:
+        InputError: for a name or option that does not exist, or an arm that lacks a signal.
+    """
+    if name not in CONTROLLERS:
+        raise InputError(f"no controller '{name}'{did_you_mean(name, CONTROLLERS)}")
+    recipe = CONTROLLERS[name]
+    allowed = _options(recipe.build)
+    for option in options:
+        if option not in allowed:
+            raise InputError(f"controller '{name}' has no option '{option}'{did_you_mean(option, allowed)}")
+    return recipe.build(arm, interval, **{**recipe.options, **options})
+
+
+def _options(build: type[Controller]) -> list[str]:
+    """Names of a class's options, with those that it hands on to the class above."""
+    parameters = inspect.signature(build).parameters.values()
+    own = [p.name for p in parameters if p.kind is not inspect.Parameter.VAR_KEYWORD][2:]
+    hands_on = any(p.kind is inspect.Parameter.VAR_KEYWORD for p in parameters)
+    return own + (_options(build.__mro__[1]) if hands_on else [])
+
+
+__all__ = ["CONTROLLERS", "Controller", "Recipe", "make_controller"]

@@ -1,0 +1,68 @@
+"""The part of the arm's motion that control can act on, apart from what is too fast for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import expm, schur, solve_sylvester
+
+from flexarm_env.arm import Arm
+from flexarm_env.controllers.base import Floats
+from flexarm_env.linear import linearise
+
+
+@dataclass(frozen=True, eq=False)
+class SlowPart:
+    """The slow motion of the moving arm: z[k+1] = transition z + response u, y = output z + direct u, x = lift z.
+
+    Attributes:
+        names: of the physical states x (states,).
+        signals: names of the outputs.
+        transition: (slow, slow).
+        response: (slow, 2) to command [A or V] and torque on the hub [Nm].
+        output: (outputs, slow).
+        direct: (outputs, 2), what the fast motion adds at once.
+        offset: (outputs,) readings at rest.
+        lift: (states, slow).
+    """
+
+    names: tuple[str, ...]
+    signals: tuple[str, ...]
+    transition: Floats
+    response: Floats
+    output: Floats
+    direct: Floats
+    offset: Floats
+    lift: Floats
+
+    def row(self, name: str) -> Floats:
+        """Return (slow,), the row that gives a physical state."""
+        return self.lift[self.names.index(name)]
+
+
+def slow_part(arm: Arm, interval: float, highest_frequency: float) -> SlowPart:
+    """Return the moving arm, its gears rigid, without what is faster than highest_frequency [Hz] or a quarter of the sampling.
+
+    The slow invariant subspace is exact, and what is left out keeps its static answer.
+    """
+    for effect in ("backlash", "gear_compliance"):
+        arm = arm.without_effect(effect)
+    model = linearise(arm.with_values({"drive.gear_stiffness": 0.0}), "moving", interval)
+    bound = 2.0 * np.pi * min(highest_frequency, 0.25 / interval)
+    upper, basis, count = schur(model.dynamics, sort=lambda real, imag: np.hypot(real, imag) <= bound)
+    slow, fast = upper[:count, :count], upper[count:, count:]
+    mixed = solve_sylvester(slow, -fast, -upper[:count, count:])
+    whole = np.hstack([basis[:, :count], basis[:, :count] @ mixed + basis[:, count:]])
+    forcing = np.linalg.solve(whole, model.forcing)
+    step = expm(np.block([[slow, forcing[:count]], [np.zeros((2, count + 2))]]) * interval)
+    return SlowPart(
+        names=model.states,
+        signals=model.outputs,
+        transition=step[:count, :count],
+        response=step[:count, count:],
+        output=model.output @ whole[:, :count],
+        direct=-model.output @ whole[:, count:] @ np.linalg.solve(fast, forcing[count:]),
+        offset=model.offset,
+        lift=whole[:, :count],
+    )
