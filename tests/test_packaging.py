@@ -18,28 +18,29 @@ PROJECT = Path(__file__).resolve().parent.parent
 PACKAGE = "flexarm_env"
 METADATA = tomllib.loads((PROJECT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
-HEAVY = {"torch", "stable_baselines3", "sb3_contrib", "plotly", "matplotlib", "polars", "pandas", "numba"}
+HEAVY = {"torch", "stable_baselines3", "sb3_contrib", "plotly", "matplotlib", "polars", "pandas", "numba", "pygame"}
 
 # A module imports from its own layer and those above it in this list.
 LAYERS = (
     {"errors"},
     {"units", "parameters", "signals"},
-    {"arm", "arm_file", "plant", "effects", "sensors"},
+    {"arm", "arm_file", "plant", "effects", "sensors", "linear"},
     {"identify", "controllers", "tasks", "render", "env"},
-    {"vector_env", "sb3", "pictures"},
+    {"vector_env", "sb3", "pictures", "registration"},
     {"lab", "cli", "demo", "__main__"},
     {"agents", "benchmarks"},
 )
 RANK = {name: rank for rank, layer in enumerate(LAYERS) for name in layer}
 # From here on modules are users of the package and may take names from flexarm_env itself.
 USERS = RANK["cli"]
-# Beyond the layers: identify never sees the env, and controllers see observations only.
+# Beyond the layers: identify never sees the env, and controllers see observations only (and the arm that they believe in).
 NEVER = {
     "identify": {"env", "tasks", "render"},
-    "controllers": {"arm", "plant", "effects", "sensors", "identify", "tasks", "render", "env"},
+    "controllers": {"plant", "effects", "sensors", "identify", "tasks", "render", "env"},
 }
 ONLY_IN = {
     "gymnasium": {"tasks", "render", "env"}.union(*LAYERS[RANK["env"] + 1 :]),
+    "pygame": {"render"},
     **{name: {"sb3", "agents", "benchmarks"} for name in ("torch", "stable_baselines3", "sb3_contrib")},
 }
 
@@ -139,7 +140,7 @@ def test_a_right_import_passes(tmp_path, place, line):
 
 def test_every_import_is_declared():
     extras = METADATA["optional-dependencies"]
-    requirements = [*METADATA["dependencies"], *extras["plots"], *extras["train"]]
+    requirements = [*METADATA["dependencies"], *extras["plots"], *extras["render"], *extras["train"]]
     declared = {re.match(r"[\w.-]+", line)[0].lower() for line in requirements}
     installed = importlib.metadata.packages_distributions()
     files = (PROJECT / PACKAGE).rglob("*.py")

@@ -59,10 +59,22 @@ ENTRANCES = (
     "let_through",
     "control_step",
     "replay",
+    "look_batch",
+    "step_batch",
 )
 
 #: The kernel, each file after those that it calls.
-FILES = ("propagate.py", "crossing.py", "stick_slip.py", "varying.py", "slide.py", "glide.py", "events.py", "kernel.py")
+FILES = (
+    "propagate.py",
+    "crossing.py",
+    "stick_slip.py",
+    "varying.py",
+    "slide.py",
+    "glide.py",
+    "events.py",
+    "kernel.py",
+    "batch.py",
+)
 
 Law = tuple[str, str, Callable[..., float], tuple[str, ...]]  # port, effect, function, names of its parameters
 
@@ -150,7 +162,7 @@ def _signature(node: ast.FunctionDef) -> ast.expr:
 
 
 def _unsigned(index: ast.expr) -> ast.expr:
-    fixed = isinstance(index, ast.Constant) or (isinstance(index, ast.Name) and index.id.isupper())
+    fixed = isinstance(index, ast.Constant | ast.Slice) or (isinstance(index, ast.Name) and index.id.isupper())
     return index if fixed else ast.Call(ast.Name("uint64", ast.Load()), [index], [])
 
 

@@ -1,0 +1,272 @@
+"""Many arms at a task, moved on together: the one core of the single and the vector environment."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+from flexarm_env.env import kernel as at
+from flexarm_env.env.kernel import after_step
+from flexarm_env.env.variation import Disturbance, Variation, hash_of
+from flexarm_env.errors import InputError
+from flexarm_env.plant.batch import TRUTH
+from flexarm_env.plant.plant import Plant
+from flexarm_env.tasks import REWARD_TERMS, Task
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+#: Readings end here: the range of the rig's converters and of its pot.
+LARGEST = {"arm_angle": 4.0 * math.pi, "motor_speed": 200.0, "strain_mid": 10.0, "strain_base": 10.0, "tip_deflection": 2.0}
+#: What normalised observations are divided by.
+SCALES = {"arm_angle": math.pi, "motor_speed": 5.0, "strain_mid": 2.0, "strain_base": 2.0, "tip_deflection": 0.2}
+#: Names of what an info holds, in the order of the columns that they are read from.
+TRUTH_NAMES = ("hub_angle", "hub_speed", "tip_deflection", "stuck")
+MOST_RATE = 10_000.0
+
+
+@dataclass(frozen=True)
+class Setup:
+    """All that an environment is made of.
+
+    Attributes:
+        task: start, target, reward, end.
+        arm: the nominal one.
+        variation: what is drawn anew for each episode.
+        disturbance: taps and drop-outs.
+        rate: control steps per second [Hz].
+        physical: whether observations are in physical units; else over SCALES.
+    """
+
+    task: Task
+    arm: Arm
+    variation: Variation = field(default_factory=Variation)
+    disturbance: Disturbance = field(default_factory=Disturbance)
+    rate: float = 200.0
+    physical: bool = False
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.rate) and 1.0 <= self.rate <= MOST_RATE):
+            raise InputError(f"control_rate = {self.rate} Hz; allowed are 1 to {MOST_RATE:g}")
+        if not self.arm.constants["drive"]["limit"] > 0.0:
+            raise InputError(f"arm '{self.arm.name}' has no limit of its drive; set limit under [drive] in its file")
+        if not self.arm.sensors:
+            raise InputError(f"arm '{self.arm.name}' has no sensors; an environment needs one at least")
+
+    @property
+    def samples(self) -> int:
+        """Control steps of an episode."""
+        return max(round(self.task.duration * self.rate), 1)
+
+    def scales(self) -> Floats:
+        """Return what readings and target are divided by (signals + 1,)."""
+        if self.physical:
+            return np.ones(len(self.arm.sensors) + 1)
+        return np.array([*(SCALES[s] for s in self.arm.sensors), SCALES["arm_angle"]])
+
+    def bounds(self) -> Floats:
+        """Return the largest observation of each reading and of the target (signals + 1,)."""
+        return np.array([*(LARGEST[s] for s in self.arm.sensors), LARGEST["arm_angle"]]) / self.scales()
+
+
+class Batch:
+    """Arms at a task, one after another in arrays; arm i draws from its own seed.
+
+    Args:
+        setup: what all have in common.
+        count: of arms.
+        threads: over which steps are spread.
+    """
+
+    def __init__(self, setup: Setup, count: int, threads: int = 1) -> None:
+        self.setup, self.count = setup, count
+        nominal = setup.variation.arm(setup.arm, [0.5] * len(setup.variation.ranges))
+        self.plant = nominal.plant(1.0 / setup.rate)
+        _check_layouts(setup, self.plant)
+        self.limit = setup.arm.constants["drive"]["limit"]
+        self.sensors = _sensors(setup)
+        shift, self.signals = self.plant.delay_samples, len(setup.arm.sensors)
+        if shift < 0:
+            raise InputError(f"arm '{setup.arm.name}' has a time offset ahead of its commands, which no environment can have")
+        self.waiting, self.delayed = np.zeros((shift, count)), shift > 0
+        self.observations = np.zeros((count, self.signals + 1), dtype=np.float32)
+        self.keys, self.seeds = np.zeros(count, dtype=np.uint64), np.zeros(count, dtype=np.uint64)
+        self.episodes = np.zeros(count, dtype=np.int64)
+        self.step_batch, self.layout = self.plant.kernel.step_batch, self.plant.layout
+        self.first_state: Floats | None = None
+        bounds = np.linspace(0, count, max(min(threads, count), 1) + 1).astype(int)
+        self.parts = list(zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True))
+        self.pool = ThreadPoolExecutor(len(self.parts) - 1) if len(self.parts) > 1 else None
+        self._allocate()
+
+    def _allocate(self) -> None:
+        """Lay out all numbers in one array: the kernels pay for each array that they are given."""
+        setup, plant, count = self.setup, self.plant, self.count
+        depth = int(self.sensors[:, at.WHOLE_DELAY].max()) + 2
+        own_constants = bool(setup.variation.ranges)
+        shapes = {
+            "settings": (at.SETTINGS,),
+            "sensors": self.sensors.shape,
+            "own": (count, at.COLUMNS),
+            "looks": (count, self.signals + TRUTH),
+            "asked": (count,),
+            "commands": (count,),
+            "pushes": (count,),
+            "shown": (count, self.signals),
+            "history": (count, depth, self.signals),
+            "constants": (count if own_constants else 1, plant.constants.size),
+            "states": (count, plant.state.size),
+            "scratch": (len(self.parts), plant.scratch.size),
+        }
+        ends = np.cumsum([math.prod(shape) for shape in shapes.values()])
+        first = dict(zip(shapes, [0, *ends[:-1].tolist()], strict=True))
+        self.arena = np.zeros(ends[-1])
+        views = {name: self.arena[first[name] :][: math.prod(shape)].reshape(shape) for name, shape in shapes.items()}
+        self.seen_of_first = self.arena[first["own"] :][: at.COLUMNS + self.signals + TRUTH] if count == 1 else self.arena[:0]
+        self.own, self.looks, self.asked, self.commands = views["own"], views["looks"], views["asked"], views["commands"]
+        self.shown, self.history, self.states, self.constants = (
+            views["shown"], views["history"], views["states"], views["constants"],
+        )  # fmt: skip
+        views["settings"][:], views["sensors"][:] = _settings(setup, self.limit), self.sensors
+        self.constants[:] = plant.constants
+        each = plant.constants.size if own_constants else 0
+        heard = first["commands"] if self.delayed else first["asked"]
+        self.physics = np.array(
+            [
+                first["constants"], each, first["states"], plant.state.size, heard, first["pushes"],
+                first["looks"], first["scratch"], plant.scratch.size,
+            ]
+        )  # fmt: skip
+        self.places = np.array(
+            [
+                first["settings"], first["sensors"], first["own"], first["looks"], self.signals + TRUTH, first["asked"],
+                first["pushes"], first["history"], first["shown"], self.signals, depth,
+            ]
+        )  # fmt: skip
+
+    def close(self) -> None:
+        """Let the threads go."""
+        if self.pool:
+            self.pool.shutdown()
+            self.pool = None
+
+    def reset(self, arms: Sequence[int] | Indices, seeds: Sequence[int | None] | None = None) -> None:
+        """Start the next episode of some arms; with a seed, their first one of that seed."""
+        for i, arm in enumerate(arms):
+            seed = None if seeds is None else seeds[i]
+            if seed is None:
+                self.episodes[arm] += 1
+            else:
+                self.seeds[arm], self.episodes[arm] = np.uint64(seed % 2**64), 0
+            self._start(int(arm))
+
+    def _start(self, arm: int) -> None:
+        setup, own = self.setup, self.own[arm]
+        episode = int(self.episodes[arm])
+        self.keys[arm] = np.uint64(at.key_of(self.seeds[arm], hash_of("sensors"), episode))
+        plant = self.plant
+        if setup.variation.ranges:
+            key = np.uint64(at.key_of(self.seeds[arm], hash_of("arm"), episode))
+            draws = [at.uniform(key, 0, i) for i in range(len(setup.variation.ranges))]
+            plant = setup.variation.arm(setup.arm, draws).plant(1.0 / setup.rate)
+            self.constants[arm] = plant.constants
+        if setup.variation.ranges or self.first_state is None:
+            self.first_state = self._run_up(plant)
+        self.states[arm] = self.first_state
+        self.waiting[:, arm] = 0.0
+        plant.kernel.look_batch(self.arena, plant.layout, self.physics, arm, arm + 1)
+        angle = self.looks[arm, -TRUTH]
+        own[:] = 0.0
+        own[at.FIRST_ANGLE] = angle
+        own[at.FIRST_TARGET] = own[at.TARGET] = angle if setup.task.hold else setup.task.target
+        self.history[arm] = self.looks[arm, :-TRUTH]
+        self.shown[arm] = self.looks[arm, :-TRUTH]
+        at.after_reset(self.arena, self.places, self.keys, self.observations, arm)
+
+    def _run_up(self, plant: Plant) -> Floats:
+        """Return the state after what the task lets happen before an episode."""
+        task = self.setup.task
+        start = np.zeros(plant.states)
+        start[: plant.bodies] = task.angle
+        plant.place(start)
+        pulse, coast = round(task.pulse_time * self.setup.rate), round(task.coast * self.setup.rate)
+        if pulse + coast:
+            plant.replay(np.concatenate([np.full(pulse, task.pulse * self.limit), np.zeros(coast + 1)]))
+        return plant.state.copy()
+
+    def step(self) -> None:
+        """Move all arms on by one sample under what is `asked` (arms,) [A or V]."""
+        if self.delayed:
+            self.commands[:] = self.waiting[0]
+            self.waiting[:-1] = self.waiting[1:]
+            self.waiting[-1] = self.asked
+        if self.pool is None:
+            self._step(0)
+            return
+        others = [self.pool.submit(self._step, part) for part in range(1, len(self.parts))]
+        self._step(0)
+        wait(others)
+
+    def _step(self, part: int) -> None:
+        first, last = self.parts[part]
+        self.step_batch(self.arena, self.layout, self.physics, first, last, part)
+        after_step(self.arena, self.places, self.keys, self.observations, first, last)
+
+    def info(self) -> dict[str, Floats]:
+        """Return what an agent does not see, by name (arms,): the truth, the target, the reward's terms."""
+        truth = {name: self.looks[:, i - TRUTH] for i, name in enumerate(TRUTH_NAMES)}
+        terms = {f"reward_{name}": self.own[:, at.TERM + i] for i, name in enumerate(REWARD_TERMS)}
+        return truth | {"target": self.own[:, at.TARGET], "command": self.own[:, at.COMMAND]} | terms
+
+    def arm_of(self, arm: int) -> Arm:
+        """Return the arm as it was drawn for the present episode."""
+        key = np.uint64(at.key_of(self.seeds[arm], hash_of("arm"), int(self.episodes[arm])))
+        draws = [at.uniform(key, 0, i) for i in range(len(self.setup.variation.ranges))]
+        return self.setup.variation.arm(self.setup.arm, draws)
+
+
+def _check_layouts(setup: Setup, plant: Plant) -> None:
+    """Refuse ranges over which an arm becomes another kind of arm.
+
+    Raises:
+        InputError: naming the ranges.
+    """
+    ranges = setup.variation.ranges
+    for end in (0.0, 1.0) if ranges else ():
+        other = setup.variation.arm(setup.arm, [end] * len(ranges)).plant(1.0 / setup.rate)
+        if not np.array_equal(other.layout, plant.layout) or other.delay_samples != plant.delay_samples:
+            paths = ", ".join(path for path, _, _ in ranges)
+            raise InputError(f"the ranges of {paths} change how the arm is built, not only its numbers; narrow them")
+
+
+def _sensors(setup: Setup) -> Floats:
+    """Return the sensors' numbers (signals, SENSOR)."""
+    table = np.zeros((len(setup.arm.sensors), at.SENSOR))
+    scales = setup.scales()
+    for j, (signal, sensor) in enumerate(setup.arm.sensors.items()):
+        late = sensor["delay"] * setup.rate
+        whole = math.floor(late + 1e-9)
+        table[j] = (sensor["noise"], sensor["resolution"], LARGEST[signal], scales[j], whole, max(late - whole, 0.0))
+    return table
+
+
+def _settings(setup: Setup, limit: float) -> Floats:
+    drive, trouble, rate = setup.arm.constants["drive"], setup.disturbance, setup.rate
+    per_torque = 1.0 / (drive["gear_ratio"] * drive["torque_constant"])
+    if setup.arm.input == "voltage":
+        per_torque *= drive["resistance"]
+    settings = np.zeros(at.SETTINGS)
+    settings[at.INTERVAL], settings[at.HALF_PERIOD], settings[at.RANGE] = 1.0 / rate, setup.task.half_period, setup.task.range
+    settings[at.LENGTH] = setup.arm.constants.get("beam", {}).get("length", 1.0)
+    settings[at.LIMIT], settings[at.PER_TORQUE], settings[at.TARGET_SCALE] = limit, per_torque, setup.scales()[-1]
+    settings[at.TAP_CHANCE], settings[at.TAP_TORQUE] = trouble.tap_rate / rate, trouble.tap_torque
+    settings[at.TAP_SAMPLES] = max(round(trouble.tap_time * rate), 1)
+    settings[at.DROP_CHANCE], settings[at.DROP_SAMPLES] = trouble.dropout_rate / rate, max(round(trouble.dropout_time * rate), 1)
+    settings[at.WEIGHTS :] = [setup.task.weights.get(name, 0.0) for name in REWARD_TERMS]
+    return settings

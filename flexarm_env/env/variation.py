@@ -1,0 +1,140 @@
+"""What differs from episode to episode: constants and effects of the arm, and what disturbs it."""
+
+from __future__ import annotations
+
+import math
+import zlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from flexarm_env.arm import Arm, check_bounds
+from flexarm_env.effects import Effect
+from flexarm_env.errors import InputError, did_you_mean
+
+Range = Sequence[float]
+#: Stands in a parameter's range for absence: the smallest share of it that still counts as present.
+LEAST_SHARE = 1e-9
+#: Settings of a sensor that the plant works in; noise, steps and delay are the same for all arms of an environment.
+IN_THE_PLANT = ("gain", "offset", "filter", "position")
+
+
+@dataclass(frozen=True)
+class Disturbance:
+    """Taps on the hub and sensors that drop out, at random times.
+
+    Attributes:
+        tap_rate: taps per second.
+        tap_torque: largest torque of a tap, on the hub [Nm]; each is uniform between plus and minus this.
+        tap_time: how long a tap lasts [s].
+        dropout_rate: drop-outs per second.
+        dropout_time: how long a sensor, one at a time, shows its last reading [s].
+    """
+
+    tap_rate: float = 0.0
+    tap_torque: float = 0.5
+    tap_time: float = 0.02
+    dropout_rate: float = 0.0
+    dropout_time: float = 0.05
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if not (math.isfinite(value) and value >= 0.0):
+                raise InputError(f"disturb: {name} = {value:g}; give a number from 0 up")
+
+
+def find_disturbance(given: Disturbance | Mapping[str, float] | None) -> Disturbance:
+    """Return a disturbance from its settings.
+
+    Raises:
+        InputError: for a setting that does not exist or a value that is none.
+    """
+    if isinstance(given, Disturbance):
+        return given
+    for name in given or {}:
+        if name not in Disturbance.__dataclass_fields__:
+            raise InputError(f"disturb: unknown setting '{name}'{did_you_mean(name, Disturbance.__dataclass_fields__)}")
+    return Disturbance(**(given or {}))
+
+
+@dataclass(frozen=True)
+class Variation:
+    """Values that are drawn anew, uniformly, for each episode: path in the arm, lowest and highest value (SI units)."""
+
+    ranges: tuple[tuple[str, float, float], ...] = ()
+
+    def arm(self, arm: Arm, draws: Sequence[float]) -> Arm:
+        """Return the arm with each value set by its draw, from 0 up to 1 (ranges,)."""
+        values = {path: low + draw * (high - low) for (path, low, high), draw in zip(self.ranges, draws, strict=True)}
+        return arm.with_values(values)
+
+
+def find_variation(arm: Arm, randomise: Mapping[str, Range] | None, vary: Mapping[str, float] | None) -> tuple[Arm, Variation]:
+    """Return the arm with the effects that are to be drawn, and their ranges.
+
+    Args:
+        arm: the nominal one.
+        randomise: (lowest, highest) value in SI units of paths such as "payload.mass" or "hub.inertia".
+        vary: share by which the arm's own value may differ, as {"hub.inertia": 0.1} for ±10 %.
+
+    Raises:
+        InputError: for a path that does not exist, or a range that is none or out of bounds.
+    """
+    ranges = []
+    for path, given in (randomise or {}).items():
+        low, high = _pair(path, given)
+        arm, place = _place(arm, path)
+        ranges.append((place, *_bounded(arm, place, low, high)))
+    for path, share in (vary or {}).items():
+        if not 0.0 <= float(share) < 1.0:
+            raise InputError(f"vary: {path} = {share}; give a share from 0 to less than 1, as 0.1 for ±10 %")
+        arm, place = _place(arm, path)
+        ends = sorted((arm.value(place) * (1.0 - share), arm.value(place) * (1.0 + share)))
+        ranges.append((place, *_bounded(arm, place, *ends)))
+    return arm, Variation(tuple(ranges))
+
+
+def _pair(path: str, given: Range) -> tuple[float, float]:
+    try:
+        low, high = (float(value) for value in given)
+    except (TypeError, ValueError):
+        raise InputError(f"randomise: {path} = {given!r}; give two numbers, lowest and highest") from None
+    if not low <= high:
+        raise InputError(f"randomise: {path} = ({low:g}, {high:g}); give the lowest value first")
+    return low, high
+
+
+def _place(arm: Arm, path: str) -> tuple[Arm, str]:
+    """Return the arm, with the effect if it lacks it, and the full path of a value."""
+    section, _, key = path.removeprefix("effects.").partition(".")
+    if section in arm.known and key in arm.known[section].parameters:
+        return (arm if section in arm.effects else arm.with_effect(section)), f"effects.{section}.{key}"
+    if section == "sensors":
+        signal, _, key = key.partition(".")
+        if key in arm.sensors.get(signal, {}) and key in IN_THE_PLANT:
+            return arm, path
+    elif key in arm.constants.get(section, {}):
+        return arm, path
+    every = [f"{s}.{k}" for s, table in arm.constants.items() for k in table]
+    every += [f"sensors.{signal}.{key}" for signal in arm.sensors for key in IN_THE_PLANT]
+    every += [f"{name}.{k}" for name in arm.known for k in arm.known[name].parameters]
+    raise InputError(f"no value '{path}' in arm '{arm.name}'{did_you_mean(path, every)}")
+
+
+def _bounded(arm: Arm, path: str, low: float, high: float) -> tuple[float, float]:
+    """Return the range within the parameter's bounds, clear of the value that would take the effect's law away."""
+    parameter = arm.parameter(path)
+    check_bounds(path, low, parameter)
+    check_bounds(path, high, parameter)
+    section, name, *_ = path.split(".")
+    if section == "effects" and parameter.null is not None and low == parameter.null and _is_law(arm.known[name]):
+        low += LEAST_SHARE * (high - low)
+    return low, high
+
+
+def _is_law(effect: type[Effect]) -> bool:
+    return effect.port("structure") is None
+
+
+def hash_of(name: str) -> int:
+    """Return a number for a name, the same in every process."""
+    return zlib.crc32(name.encode())

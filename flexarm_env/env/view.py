@@ -1,0 +1,67 @@
+"""What is drawn of an environment: the arm as it stands and the strain of the last seconds."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.env import kernel as at
+from flexarm_env.env.batch import Batch, Setup
+from flexarm_env.render import Renderer, Scene, beam_shape
+
+STATIONS = 41
+TRACE_TIME = 3.0  # [s]
+
+
+class View:
+    """Draws the first arm of a batch.
+
+    Args:
+        setup: of the environment.
+        mode: "human" or "rgb_array".
+        fps: frames per second of a window.
+    """
+
+    def __init__(self, setup: Setup, mode: Literal["human", "rgb_array"], fps: int) -> None:
+        structure = setup.arm.structure()
+        self.length = structure.length or 1.0
+        self.stations = np.linspace(0.0, self.length, STATIONS)
+        self.shape = beam_shape(structure, self.stations)
+        gages = {name: s["position"] for name, s in setup.arm.sensors.items() if name.startswith("strain")}
+        self.renderer = Renderer(mode, self.length, fps, tuple(gages.values()))
+        self.signals = list(setup.arm.sensors)
+        self.bent = next((s for s in ("strain_base", "tip_deflection", "strain_mid") if s in self.signals), None)
+        self.setup = setup
+        self.trace: deque[tuple[float, float]] = deque(maxlen=round(TRACE_TIME * setup.rate))
+
+    def clear(self) -> None:
+        """Forget the strain of an episode that is over."""
+        self.trace.clear()
+
+    def draw(self, batch: Batch, state: NDArray[np.float64]) -> NDArray[np.uint8] | None:
+        """Draw the arm in a physical state (states,)."""
+        own, truth = batch.own[0], batch.looks[0, -5:]
+        time = float(own[at.SAMPLE]) / self.setup.rate
+        if self.bent is not None:
+            self.trace.append((time, float(batch.shown[0, self.signals.index(self.bent)])))
+        times, values = np.array(self.trace).reshape(-1, 2).T
+        return self.renderer.draw(
+            Scene(
+                time=time,
+                hub_angle=float(truth[0]),
+                stuck=bool(truth[3] > 0.0),
+                stations=self.stations,
+                deflection=self.shape @ state,
+                target=float(own[at.TARGET]),
+                command=float(own[at.COMMAND]) / batch.limit,
+                trace=(times, values),
+                title=f"{self.setup.task.name} · {self.setup.arm.name}",
+            )
+        )
+
+    def close(self) -> None:
+        """Close the window."""
+        self.renderer.close()

@@ -1,0 +1,72 @@
+"""One control step of many arms that differ in their numbers only."""
+
+from __future__ import annotations
+
+from numba import njit
+
+from flexarm_env.plant.kernel import control_step, is_lost, let_through, measure
+from flexarm_env.plant.layout import (
+    BLOCKS,
+    BODIES,
+    COMMAND,
+    COORDINATES,
+    HEADER,
+    HELD_HUB,
+    MODE,
+    PHYSICAL,
+    SIGNALS,
+    Numbers,
+    Places,
+)
+from flexarm_env.plant.propagate import dot
+from flexarm_env.plant.stick_slip import is_stuck, record
+
+#: Columns of the truth after the readings: hub angle and speed, tip deflection, whether the hub sticks, whether all is lost.
+TRUTH = 5
+
+# --- places: where each quantity of a batch stands in its array, and how far one arm's is from the next
+AT_CONSTANTS, CONSTANTS_EACH, AT_STATES, STATE_EACH, AT_COMMANDS, AT_PUSHES, AT_LOOKS, AT_SCRATCH, SCRATCH_EACH = range(9)
+PLACES = 9
+
+
+@njit
+def look(d: Numbers, n: Places, s: Numbers, out: Numbers, at: int) -> None:
+    """Write hub angle [rad], hub speed [rad/s], tip deflection [m] and whether the hub sticks, to out from `at` on."""
+    mode = int(s[MODE])
+    size, count = 2 * n[BLOCKS], n[COORDINATES]
+    rows = record(n, mode) + n[PHYSICAL]
+    stuck = is_stuck(mode, 0)
+    out[at] = s[HELD_HUB] if stuck else dot(d, rows, s, HEADER, size)
+    out[at + 1] = 0.0 if stuck else dot(d, rows + count * size, s, HEADER, size)
+    out[at + 2] = dot(d, rows + (count - 2) * size, s, HEADER, size) if count > n[BODIES] else 0.0
+    out[at + 3] = 1.0 if stuck else 0.0
+    out[at + 4] = 1.0 if is_lost(n, s) else 0.0
+
+
+@njit
+def look_batch(arena: Numbers, n: Places, places: Places, first: int, last: int) -> None:
+    """Write readings without noise, then the truth, of arms first to last - 1 (see step_batch)."""
+    for arm in range(first, last):
+        constants = arena[places[AT_CONSTANTS] + arm * places[CONSTANTS_EACH] :]
+        state = arena[places[AT_STATES] + arm * places[STATE_EACH] :]
+        measure(constants, n, state, arena, places[AT_LOOKS] + arm * (n[SIGNALS] + TRUTH))
+        look(constants, n, state, arena, places[AT_LOOKS] + arm * (n[SIGNALS] + TRUTH) + n[SIGNALS])
+
+
+@njit
+def step_batch(arena: Numbers, n: Places, places: Places, first: int, last: int, part: int) -> None:
+    """Move arms first to last - 1 on by one sample and look at them.
+
+    All numbers lie in one array, since numba pays for each array at each call; `places` says where in it. Every arm has the
+    layout n, and its own constants unless CONSTANTS_EACH is 0. Its command goes through the drive; its push is added to
+    what the drive lets through. `part` names the scratch of a thread.
+    """
+    scratch = arena[places[AT_SCRATCH] + part * places[SCRATCH_EACH] :]
+    for arm in range(first, last):
+        constants = arena[places[AT_CONSTANTS] + arm * places[CONSTANTS_EACH] :]
+        state = arena[places[AT_STATES] + arm * places[STATE_EACH] :]
+        push = arena[places[AT_PUSHES] + arm]
+        before = state[COMMAND]
+        command = let_through(constants, n, state, arena[places[AT_COMMANDS] + arm])
+        control_step(constants, n, state, before + push, command + push, scratch)
+    look_batch(arena, n, places, first, last)

@@ -1,0 +1,115 @@
+"""The vector environment as Stable-Baselines3 expects it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.vector import AutoresetMode
+from numpy.typing import NDArray
+from stable_baselines3.common.vec_env import VecEnv
+
+from flexarm_env.env.kernel import SAMPLE
+from flexarm_env.vector_env import FlexArmVectorEnv
+
+Array = NDArray[Any]
+
+
+def make_vec(id: str, num_envs: int = 1, seed: int | None = None, **arguments: Any) -> FlexArmVecEnv:
+    """Return arms for Stable-Baselines3's algorithms to train on.
+
+    Args:
+        id: of the environment.
+        num_envs: arms.
+        seed: of the first reset; arm i gets seed + i.
+        arguments: of FlexArmVectorEnv.
+
+    Raises:
+        InputError: for arguments that do not exist or do not make sense.
+    """
+    made = gym.make_vec(
+        id, num_envs, vectorization_mode="vector_entry_point", autoreset_mode=AutoresetMode.SAME_STEP, **arguments
+    )
+    envs = made.unwrapped
+    assert isinstance(envs, FlexArmVectorEnv)
+    vec = FlexArmVecEnv(envs)
+    vec.seed(seed)
+    return vec
+
+
+class FlexArmVecEnv(VecEnv):
+    """A FlexArmVectorEnv that starts the next episode in the step that ends one.
+
+    An info is empty but for the arm's last sample of an episode, which has `terminal_observation`, `TimeLimit.truncated`
+    and the `episode` statistics that SB3 logs. The truth is in `envs.batch.info()`, for all arms at once.
+    """
+
+    def __init__(self, envs: FlexArmVectorEnv) -> None:
+        self.envs = envs
+        super().__init__(envs.num_envs, envs.single_observation_space, envs.single_action_space)
+        self.returns = np.zeros(envs.num_envs)
+        self.began = time.perf_counter()
+        self.actions: Array = np.zeros((envs.num_envs, 1))
+        self.next_seed: int | None = None
+
+    def seed(self, seed: int | None = None) -> list[int | None]:
+        """Set the seed of the next reset: arm i gets seed + i."""
+        self.next_seed = seed
+        return [None if seed is None else seed + i for i in range(self.num_envs)]
+
+    def reset(self) -> Array:
+        """Start an episode of every arm; return observations (arms, signals + 1)."""
+        observations, _ = self.envs.reset(seed=self.next_seed)
+        self.next_seed = None
+        self.returns[:] = 0.0
+        return observations
+
+    def step_async(self, actions: Array) -> None:
+        """Take the actions (arms, 1) of the next step."""
+        self.actions = actions
+
+    def step_wait(self) -> tuple[Array, Array, Array, list[dict[str, Any]]]:
+        """Apply them; return observations, rewards, whether an episode is over, and infos."""
+        envs = self.envs
+        lengths = envs.batch.own[:, SAMPLE] + 1.0
+        observations, rewards, terminated, truncated, info = envs.step(self.actions)
+        done = terminated | truncated
+        self.returns += rewards
+        infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        for i in np.flatnonzero(done):
+            elapsed = round(time.perf_counter() - self.began, 6)
+            infos[i] = {
+                "terminal_observation": info["final_obs"][i],
+                "TimeLimit.truncated": bool(truncated[i] and not terminated[i]),
+                "episode": {"r": float(self.returns[i]), "l": int(lengths[i]), "t": elapsed},
+            }
+            self.returns[i] = 0.0
+        return observations, rewards.astype(np.float32), done, infos
+
+    def close(self) -> None:
+        """Let the arms go."""
+        self.envs.close()
+
+    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+        """Return an attribute of the arms' common environment, once for each arm."""
+        value = getattr(self.envs, attr_name)
+        return [value for _ in self._get_indices(indices)]
+
+    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+        """Set an attribute of the arms' common environment."""
+        setattr(self.envs, attr_name, value)
+
+    def env_method(self, method_name: str, *args: Any, indices: Any = None, **kwargs: Any) -> list[Any]:
+        """Call a method of the arms' common environment for each arm, with its number first."""
+        return [getattr(self.envs, method_name)(i, *args, **kwargs) for i in self._get_indices(indices)]
+
+    def env_is_wrapped(self, wrapper_class: type, indices: Any = None) -> list[bool]:
+        """Return False for each arm: nothing is wrapped; episodes are counted without a Monitor."""
+        return [False for _ in self._get_indices(indices)]
+
+    def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
+        """Return nothing for each arm: look at a single environment."""
+        return [None] * self.num_envs

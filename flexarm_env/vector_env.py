@@ -1,0 +1,210 @@
+"""Many arms in one environment, on the kernel of the single one: the same bits, thousands of times a step."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+from flexarm_env.env.batch import Batch
+from flexarm_env.env.flexarm import find_arm, make_setup, refuse_unknown, spaces_of
+from flexarm_env.env.kernel import REWARD, SAMPLE, TERMINATED
+from flexarm_env.env.variation import Disturbance, Range
+from flexarm_env.errors import InputError
+from flexarm_env.tasks import Task
+
+Array = NDArray[Any]
+
+
+class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
+    """Arms at one task; arm i after reset(seed=s) is what the single environment is after reset(seed=s + i), bit for bit.
+
+    Args:
+        num_envs: arms.
+        task: its name, or a Task.
+        arm: name of a shipped arm, path of an arm file, or an Arm.
+        prior: the arm that a controller believes in.
+        randomise: as in FlexArmEnv, drawn for each arm and episode.
+        vary: as in FlexArmEnv.
+        disturb: as in FlexArmEnv.
+        control_rate: steps per second [Hz].
+        physical: observations in SI units, not normalised.
+        max_episode_steps: after which an episode is truncated; the task's duration by default.
+        autoreset_mode: what happens to an arm whose episode is over, see gymnasium.vector.AutoresetMode.
+        threads: over which the arms are spread; more than one pays from some hundred arms on.
+        render_mode: only None: look at a single environment.
+
+    Raises:
+        InputError: for an argument that does not exist or does not make sense.
+    """
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        task: str | Task = "slew",
+        arm: str | Path | Arm = "thesis",
+        *,
+        prior: str | Path | Arm | None = None,
+        randomise: Mapping[str, Range] | None = None,
+        vary: Mapping[str, float] | None = None,
+        disturb: Disturbance | Mapping[str, float] | None = None,
+        control_rate: float = 200.0,
+        physical: bool = False,
+        max_episode_steps: int | None = None,
+        autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
+        threads: int = 1,
+        render_mode: str | None = None,
+        **unknown: Any,
+    ) -> None:
+        refuse_unknown(unknown)
+        for name, value in (("num_envs", num_envs), ("threads", threads), ("max_episode_steps", max_episode_steps)):
+            if value is not None and not (isinstance(value, int | np.integer) and value >= 1):
+                raise InputError(f"{name} = {value!r}; give a whole number from 1 up")
+        if render_mode is not None:
+            raise InputError("render_mode: a vector environment draws nothing; use gymnasium.make for pictures")
+        self.setup = make_setup(task, arm, randomise, vary, disturb, control_rate, physical)
+        self.prior = find_arm(arm if prior is None else prior)
+        self.autoreset_mode = _mode(autoreset_mode)
+        self.metadata = {"autoreset_mode": self.autoreset_mode, "render_modes": []}
+        self.num_envs, self.render_mode = int(num_envs), None
+        self.max_episode_steps = max_episode_steps or self.setup.samples
+        self.batch = Batch(self.setup, self.num_envs, int(threads))
+        self.single_observation_space, self.single_action_space = spaces_of(self.setup)
+        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
+        self.action_space = batch_space(self.single_action_space, self.num_envs)
+        self.every = np.arange(self.num_envs)
+        self.all = np.ones(self.num_envs, dtype=bool)
+        self.over = np.zeros(self.num_envs, dtype=bool)
+        self.started = False
+
+    def reset(
+        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Array, dict[str, Any]]:
+        """Start an episode of every arm, or of those in options["reset_mask"] (arms,).
+
+        Args:
+            seed: arm i gets seed + i; or one for each; or none, to go on.
+            options: "reset_mask", a boolean for each arm.
+
+        Raises:
+            InputError: for seeds or a mask of another length.
+        """
+        seeds = self._seeds(seed)
+        mask = (options or {}).get("reset_mask", self.all)
+        if np.shape(mask) != (self.num_envs,) or np.asarray(mask).dtype != bool:
+            raise InputError(f"reset_mask of shape {np.shape(mask)}; give {self.num_envs} booleans")
+        if not (self.started or np.all(mask)):
+            raise InputError("reset_mask in the first reset: every arm has to be started once")
+        chosen = self.every[np.asarray(mask)]
+        self.batch.reset(chosen, [seeds[i] for i in chosen])
+        self.over[chosen] = False
+        self.started = True
+        return self.batch.observations.copy(), self._info(np.asarray(mask))
+
+    def _seeds(self, seed: int | Sequence[int | None] | None) -> list[int | None]:
+        if seed is None:
+            if self.started:
+                return [None] * self.num_envs
+            seed = int(self.np_random.integers(2**62))
+        if isinstance(seed, int | np.integer):
+            self._np_random, self._np_random_seed = gym.utils.seeding.np_random(int(seed))
+            return [int(seed) + i for i in range(self.num_envs)]
+        if len(seed) != self.num_envs:
+            raise InputError(f"{len(seed)} seeds for {self.num_envs} arms; give one for each, or one number")
+        return list(seed)
+
+    def step(self, actions: Array) -> tuple[Array, Array, Array, Array, dict[str, Any]]:
+        """Apply the commands actions · limit (arms, 1) for one sample.
+
+        Raises:
+            gymnasium.error.ResetNeeded: before the first reset, or for arms whose episode is over and that wait for a reset.
+            InputError: for actions of another shape, or that are not numbers.
+        """
+        if not self.started:
+            raise gym.error.ResetNeeded("step before reset: call envs.reset() first")
+        batch, before = self.batch, self.over
+        if self.autoreset_mode is AutoresetMode.DISABLED and before.any():
+            raise gym.error.ResetNeeded('episodes are over: call envs.reset(options={"reset_mask": done}) first')
+        batch.asked[:] = _commands(actions, self.num_envs)
+        batch.asked *= batch.limit
+        batch.step()
+        rewards = batch.own[:, REWARD].copy()
+        terminated = batch.own[:, TERMINATED] > 0.0
+        truncated = batch.own[:, SAMPLE] >= self.max_episode_steps
+        self.over = terminated | truncated
+        if self.autoreset_mode is AutoresetMode.NEXT_STEP and before.any():
+            batch.reset(self.every[before])
+            rewards[before], terminated[before], truncated[before] = 0.0, False, False
+            self.over &= ~before
+        if self.autoreset_mode is AutoresetMode.SAME_STEP and self.over.any():
+            return self._same_step(rewards, terminated, truncated)
+        return batch.observations.copy(), rewards, terminated, truncated, self._info(self.all)
+
+    def _same_step(
+        self, rewards: Array, terminated: Array, truncated: Array
+    ) -> tuple[Array, Array, Array, Array, dict[str, Any]]:
+        over, last = self.over, np.full(self.num_envs, None, dtype=object)
+        for i in self.every[over]:
+            last[i] = self.batch.observations[i].copy()
+        final = {"final_obs": last, "_final_obs": over.copy(), "final_info": self._info(over), "_final_info": over.copy()}
+        self.batch.reset(self.every[over])
+        self.over = np.zeros(self.num_envs, dtype=bool)
+        return self.batch.observations.copy(), rewards, terminated, truncated, self._info(self.all) | final
+
+    def _info(self, mask: Array) -> dict[str, Any]:
+        info: dict[str, Any] = {}
+        for name, values in self.batch.info().items():
+            kept = values > 0.0 if name == "stuck" else values.copy()
+            if mask is not self.all:
+                kept[~mask] = 0
+            info[name], info[f"_{name}"] = kept, mask.copy()
+        return info
+
+    def drawn_arm(self, arm: int) -> Arm:
+        """Return arm number `arm` as it was drawn for its episode."""
+        return self.batch.arm_of(arm)
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """Let the threads go."""
+        self.batch.close()
+
+
+def _mode(given: str | AutoresetMode) -> AutoresetMode:
+    for mode in AutoresetMode:
+        if given in (mode, mode.value, mode.name):
+            return mode
+    raise InputError(f"autoreset_mode = {given!r}; allowed: {', '.join(mode.value for mode in AutoresetMode)}")
+
+
+def _commands(actions: Any, count: int) -> Array:
+    """Return actions (arms, 1) as shares of the limit (arms,)."""
+    shape = np.shape(actions)
+    if shape != (count, 1):
+        raise InputError(f"actions of shape {shape}; give one number from -1 to 1 for each arm, in shape ({count}, 1)")
+    values = np.asarray(actions, dtype=np.float64)[:, 0]
+    if not np.isfinite(values).all():
+        arm = int(np.argmin(np.isfinite(values)))
+        raise InputError(f"action of arm {arm} = {values[arm]}; give numbers from -1 to 1")
+    return np.clip(values, -1.0, 1.0)
+
+
+def slew_vector(num_envs: int = 1, **arguments: Any) -> FlexArmVectorEnv:
+    """Return arms at the task slew, for gymnasium.make_vec."""
+    return FlexArmVectorEnv(num_envs, "slew", **arguments)
+
+
+def track_vector(num_envs: int = 1, **arguments: Any) -> FlexArmVectorEnv:
+    """Return arms at the task track, for gymnasium.make_vec."""
+    return FlexArmVectorEnv(num_envs, "track", **arguments)
+
+
+def damp_vector(num_envs: int = 1, **arguments: Any) -> FlexArmVectorEnv:
+    """Return arms at the task damp, for gymnasium.make_vec."""
+    return FlexArmVectorEnv(num_envs, "damp", **arguments)

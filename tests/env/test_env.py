@@ -1,0 +1,289 @@
+"""The environments as users of Gymnasium meet them."""
+
+from __future__ import annotations
+
+import doctest
+import subprocess
+import sys
+import warnings
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+from gymnasium.vector import AutoresetMode, SyncVectorEnv
+
+import flexarm_env
+from flexarm_env import Arm, InputError
+from flexarm_env.env import pages
+from flexarm_env.registration import ENVIRONMENTS, VARIANTS
+
+IDS = [f"FlexArm/{name}{variant}-v0" for name in ENVIRONMENTS for variant in VARIANTS]
+MODES = [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP]
+TROUBLE = {"tap_rate": 4.0, "dropout_rate": 4.0}
+
+
+def actions(steps: int, arms: int) -> np.ndarray:
+    return np.random.default_rng(3).uniform(-1.0, 1.0, (steps, arms, 1)).astype(np.float32)
+
+
+@pytest.mark.parametrize("id", IDS)
+def test_the_checker_of_gymnasium_is_silent(id: str) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_env(gym.make(id).unwrapped, skip_render_check=True)
+
+
+def same(first: object, second: object) -> bool:
+    """Whether two observations, infos or what they hold are equal bit for bit."""
+    if isinstance(first, dict):
+        return isinstance(second, dict) and first.keys() == second.keys() and all(same(first[k], second[k]) for k in first)
+    one, two = np.asarray(first), np.asarray(second)
+    if one.dtype == object:
+        return all((a is None and b is None) or same(a, b) for a, b in zip(one, two, strict=True))
+    return bool(np.array_equal(one, two))
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("arms", [1, 3, 64])
+@pytest.mark.parametrize("id", IDS)
+def test_vector_and_single_arms_give_the_same_bits(id: str, arms: int, mode: AutoresetMode) -> None:
+    arguments = {"disturb": TROUBLE, "max_episode_steps": 25}
+    batch = gym.make_vec(id, arms, vectorization_mode="vector_entry_point", autoreset_mode=mode, **arguments)
+    singles = SyncVectorEnv([lambda: gym.make(id, **arguments)] * arms, autoreset_mode=mode)
+    first, second = batch.reset(seed=5), singles.reset(seed=5)
+    assert same(first[0], second[0])
+    assert same(first[1], second[1])
+    for action in actions(60, arms):
+        for one, two in zip(batch.step(action), singles.step(action), strict=True):
+            assert same(one, two)
+
+
+def test_an_episode_depends_on_its_own_seed_alone() -> None:
+    arguments = {"vectorization_mode": "vector_entry_point", "disturb": TROUBLE, "max_episode_steps": 20}
+    few, many = (gym.make_vec("FlexArm/Slew-Random-v0", n, **arguments) for n in (2, 7))
+    few.reset(seed=[11, 12])
+    many.reset(seed=[1, 2, 11, 3, 4, 12, 5])
+    for action in actions(50, 7):
+        assert same(few.step(action[[2, 5]])[0], many.step(action)[0][[2, 5]])
+
+
+def test_arms_that_wait_for_a_reset_are_reset_by_a_mask() -> None:
+    envs = gym.make_vec(
+        "FlexArm/Slew-v0", 3, vectorization_mode="vector_entry_point", autoreset_mode="Disabled", max_episode_steps=2
+    )
+    envs.reset(seed=0)
+    for action in actions(2, 3):
+        _, _, _, truncated, _ = envs.step(action)
+    assert truncated.all()
+    with pytest.raises(gym.error.ResetNeeded, match="reset_mask"):
+        envs.step(actions(1, 3)[0])
+    envs.reset(options={"reset_mask": truncated})
+    envs.step(actions(1, 3)[0])
+
+
+PROGRAM = """
+import gymnasium as gym, numpy as np, flexarm_env, hashlib
+envs = gym.make_vec("FlexArm/Track-Random-v0", 5, vectorization_mode="vector_entry_point", disturb={"tap_rate": 3.0})
+seen, _ = envs.reset(seed=9)
+digest = hashlib.sha256(seen.tobytes())
+for k in range(40):
+    seen, rewards, *_ = envs.step(np.full((5, 1), np.sin(k), dtype=np.float32))
+    digest.update(seen.tobytes() + rewards.tobytes())
+print(digest.hexdigest())
+"""
+
+
+def test_two_processes_give_the_same_bits() -> None:
+    runs = [subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True) for _ in range(2)]
+    assert runs[0].stdout == runs[1].stdout
+    assert len(runs[0].stdout.strip()) == 64
+
+
+def test_threads_change_nothing() -> None:
+    one, two = (gym.make_vec("FlexArm/Slew-v0", 33, vectorization_mode="vector_entry_point", threads=n) for n in (1, 2))
+    one.reset(seed=1)
+    two.reset(seed=1)
+    for action in actions(30, 33):
+        for ours, theirs in zip(one.step(action), two.step(action), strict=True):
+            assert same(ours, theirs)
+    two.close()
+
+
+def test_the_pages_run() -> None:
+    result = doctest.testmod(pages)
+    assert result.attempted >= 15
+    assert result.failed == 0
+
+
+@pytest.mark.parametrize("env", [pages.SlewEnv, pages.TrackEnv, pages.DampEnv])
+def test_the_pages_have_gymnasiums_headings(env: type) -> None:
+    headings = ["Description", "Action Space", "Observation Space", "Rewards", "Starting State", "Episode End", "Arguments"]
+    for heading in [*headings, "Version History"]:
+        assert f"## {heading}" in (env.__doc__ or "")
+
+
+def make(**arguments: object) -> gym.Env:
+    return gym.make("FlexArm/Slew-v0", **arguments)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"randomize": {}}, ["'randomize'", "randomise"]),
+        ({"arm": "thesys"}, ["thesys", "thesis"]),
+        ({"randomise": {"payload.mass": (-0.1, 0.3)}}, ["payload.mass", "-0.1", "bounds"]),
+        ({"randomise": {"payload.mas": (0.0, 0.3)}}, ["payload.mas", "payload.mass"]),
+        ({"randomise": {"payload.mass": 0.3}}, ["payload.mass", "two numbers"]),
+        ({"randomise": {"payload.mass": (0.3, 0.1)}}, ["lowest"]),
+        ({"randomise": {"beam.elements": (1, 3)}}, ["beam.elements", "built"]),
+        ({"randomise": {"sensors.arm_angle.noise": (0.0, 0.1)}}, ["sensors.arm_angle.noise"]),
+        ({"vary": {"hub.inertia": 1.5}}, ["hub.inertia", "share"]),
+        ({"disturb": {"taps": 1.0}}, ["'taps'", "tap_rate"]),
+        ({"disturb": {"tap_rate": -1.0}}, ["tap_rate"]),
+        ({"control_rate": 0.0}, ["control_rate"]),
+        ({"control_rate": float("nan")}, ["control_rate"]),
+        ({"physical": True, "task": "slay"}, ["task"]),
+    ],
+)
+def test_bad_arguments_give_one_clear_line(arguments: dict, words: list[str]) -> None:
+    with pytest.raises((InputError, TypeError)) as caught:
+        make(**arguments)
+    message = str(caught.value)
+    assert "\n" not in message
+    for word in words:
+        assert word in message
+
+
+@pytest.mark.parametrize("action", [np.zeros(2), np.zeros((1, 1)), np.array(0.5), np.array([np.nan]), np.array([np.inf]), None])
+def test_bad_actions_are_refused(action: object) -> None:
+    env = make().unwrapped
+    env.reset(seed=0)
+    with pytest.raises(InputError, match="action"):
+        env.step(action)
+
+
+@pytest.mark.parametrize("action", [np.zeros(3), np.zeros((3, 2)), np.array([[0.0], [np.nan], [0.0]])])
+def test_bad_actions_of_many_arms_are_refused(action: np.ndarray) -> None:
+    envs = gym.make_vec("FlexArm/Slew-v0", 3, vectorization_mode="vector_entry_point")
+    with pytest.raises(gym.error.ResetNeeded):
+        envs.step(np.zeros((3, 1)))
+    envs.reset(seed=0)
+    with pytest.raises(InputError, match="action"):
+        envs.step(action)
+
+
+def test_a_step_before_the_first_reset_is_refused() -> None:
+    with pytest.raises(gym.error.ResetNeeded, match="reset"):
+        make().unwrapped.step(np.zeros(1))
+
+
+def test_an_action_beyond_the_limit_is_clipped() -> None:
+    first, second = make(), make()
+    first.reset(seed=0)
+    second.reset(seed=0)
+    assert same(first.step(np.array([7.0]))[0], second.step(np.array([1.0]))[0])
+
+
+@pytest.mark.parametrize("id", IDS)
+def test_nothing_is_ever_nan_under_the_roughest_actions(id: str) -> None:
+    envs = gym.make_vec(id, 8, vectorization_mode="vector_entry_point", disturb={"tap_rate": 20.0, "tap_torque": 5.0})
+    seen, _ = envs.reset(seed=2)
+    for action in np.sign(actions(1500, 8)):
+        seen, rewards, *_ = envs.step(action)
+        assert np.isfinite(seen).all()
+        assert np.isfinite(rewards).all()
+
+
+def test_an_arm_that_turns_too_far_ends_its_episode() -> None:
+    env = make()
+    env.reset(seed=0)
+    for _ in range(999):
+        _, reward, terminated, truncated, info = env.step(np.ones(1))
+        if terminated:
+            break
+    assert terminated
+    assert not truncated
+    assert abs(info["hub_angle"]) > np.pi
+    assert info["reward_failure"] == -100.0
+    assert reward == pytest.approx(sum(value for name, value in info.items() if name.startswith("reward_")))
+
+
+def test_observations_are_the_readings_of_the_rig() -> None:
+    env = make(physical=True)
+    readings, truth = [], []
+    env.reset(seed=0)
+    for _ in range(600):
+        seen, *_, info = env.step(np.zeros(1))
+        readings.append(seen)
+        truth.append(info["hub_angle"])
+    readings = np.array(readings, dtype=float)
+    sensors = Arm.load("thesis").sensors
+    for column, sensor in enumerate(sensors.values()):  # at rest at zero: all that is seen is noise in steps
+        steps = readings[:, column] / sensor["resolution"]
+        assert np.allclose(steps, np.rint(steps), atol=1e-3)
+        assert readings[:, column].std() == pytest.approx(np.hypot(sensor["noise"], sensor["resolution"] / 12**0.5), rel=0.15)
+    assert np.abs(np.corrcoef(readings[:, :4].T) - np.eye(4)).max() < 0.2
+    assert readings[0, 4] == np.float32(np.deg2rad(100.0))
+    assert truth[-1] == 0.0
+
+
+def test_a_late_sensor_shows_what_was() -> None:
+    arm = Arm.load("thesis").with_values({f"sensors.{s}.{key}": 0.0 for s in Arm.load("thesis").sensors for key in QUIET})
+    late = arm.with_values({"sensors.arm_angle.delay": 0.0175})  # 3.5 samples
+    prompt, delayed = make(arm=arm, physical=True), make(arm=late, physical=True)
+    prompt.reset(seed=0)
+    delayed.reset(seed=0)
+    seen = np.array([[env.step(np.full(1, 0.4))[0] for _ in range(40)] for env in (prompt, delayed)])[:, :, 0]
+    assert seen[1, 10:] == pytest.approx(0.5 * (seen[0, 7:-3] + seen[0, 6:-4]), abs=1e-6)
+
+
+QUIET = ("noise", "resolution")
+
+
+def test_the_physics_is_that_of_simulate() -> None:
+    arm = Arm.load("thesis").with_values({f"sensors.{s}.{key}": 0.0 for s in Arm.load("thesis").sensors for key in QUIET})
+    recording = flexarm_env.simulate(arm, "pulse", duration=2.0, rate=200.0, noise=False)
+    env = make(arm=arm, physical=True)
+    seen = [env.reset(seed=0)[0]]
+    seen += [env.step(np.array([command / 5.0]))[0] for command in recording.command[:-1]]
+    for column, signal in enumerate(arm.signals):
+        assert np.array(seen)[:, column] == pytest.approx(recording.signals[signal], rel=1e-6, abs=1e-6)
+
+
+def test_a_corrected_arm_is_an_environment(tmp_path) -> None:
+    path = tmp_path / "corrected.toml"
+    Arm.load("thesis-fem").with_effect("backlash", gap=0.02).with_effect("input_delay", delay=0.012).save(path)
+    env = make(arm=str(path), prior="thesis")
+    env.reset(seed=0)
+    for _ in range(50):
+        seen, *_ = env.step(np.full(1, 0.5))
+    assert np.isfinite(seen).all()
+    assert env.unwrapped.prior.name == "thesis"
+
+
+def test_the_payload_is_drawn_for_each_episode() -> None:
+    env = gym.make("FlexArm/Slew-Random-v0")
+    env.reset(seed=4)
+    masses = []
+    for _ in range(200):
+        masses.append(env.unwrapped.drawn_arm().effects["payload"]["mass"])
+        env.reset()
+    assert len(set(masses)) == 200
+    assert 0.0 <= min(masses) < 0.02
+    assert 0.28 < max(masses) <= 0.3
+    assert np.mean(masses) == pytest.approx(0.15, abs=0.02)
+
+
+def test_taps_move_the_arm_and_dropouts_hold_a_reading() -> None:
+    env = make(disturb={"tap_rate": 2.0, "tap_torque": 2.0, "dropout_rate": 2.0, "dropout_time": 0.1})
+    env.reset(seed=1)
+    moved, held, last = 0, 0, None
+    for _ in range(900):
+        seen, _, terminated, _, info = env.step(np.zeros(1))
+        moved += info["hub_speed"] != 0.0
+        held += last is not None and bool((seen[:4] == last[:4]).any())
+        last = seen
+        assert not terminated
+    assert moved > 20
+    assert held > 100
