@@ -12,7 +12,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 export MPLBACKEND ?= Agg
 
-.PHONY: help demo test lint bench results docs clean clean-cache
+.PHONY: help demo test lint bench baselines results docs clean clean-cache
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 22
@@ -31,7 +31,11 @@ lint: $(DEV) ## check style, format and types
 bench: $(DEV) ## measure speed and accuracy
 	$(BIN)/python -m benchmarks
 
-results: demo bench ## make again what results/ holds
+baselines: $(DEV) ## evaluate all controllers and film two of them, into results/baselines/
+	$(BIN)/python -m agents.evaluate
+	$(BIN)/python -m agents.film
+
+results: demo baselines bench ## make again what results/ holds
 
 docs: $(DEV) ## run the snippets in the documentation
 	$(BIN)/python -m pytest -m "slow or not slow" tests/test_docs.py

@@ -80,6 +80,9 @@ class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
         physical: observations in SI units, not normalised.
         render_mode: "human", "rgb_array" or None.
 
+    Attributes:
+        title: of the pictures; task and arm by default.
+
     Raises:
         InputError: for an argument that does not exist or does not make sense.
     """
@@ -110,6 +113,7 @@ class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
         self.render_mode: Literal["human", "rgb_array"] | None = render_mode
         self.started = False
         self.view: View | None = None
+        self.title: str | None = None
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
         """Start an episode: with a seed, the first one of that seed; else the next. Options are not used."""
@@ -136,7 +140,7 @@ class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
             raise gym.error.ResetNeeded("step before reset: call env.reset() first")
         batch.asked[0] = one_command(action) * batch.limit
         batch.step()
-        if self.view or self.render_mode == "human":
+        if self.render_mode == "human":
             self.render()
         seen = batch.seen_of_first.tolist()
         return batch.observations[0].copy(), seen[REWARD], seen[TERMINATED] > 0.0, False, _info(seen)
@@ -162,7 +166,7 @@ class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
             gym.logger.warn('render() draws nothing without a mode: gym.make(..., render_mode="rgb_array")')
             return None
         if self.view is None:
-            self.view = View(self.setup, self.render_mode, self.metadata["render_fps"])
+            self.view = View(self.setup, self.render_mode, self.metadata["render_fps"], self.title)
         return self.view.draw(self.batch, self.state())
 
     def close(self) -> None:

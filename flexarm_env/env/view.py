@@ -23,9 +23,10 @@ class View:
         setup: of the environment.
         mode: "human" or "rgb_array".
         fps: frames per second of a window.
+        title: of the pictures; task and arm by default.
     """
 
-    def __init__(self, setup: Setup, mode: Literal["human", "rgb_array"], fps: int) -> None:
+    def __init__(self, setup: Setup, mode: Literal["human", "rgb_array"], fps: int, title: str | None = None) -> None:
         structure = setup.arm.structure()
         self.length = structure.length or 1.0
         self.stations = np.linspace(0.0, self.length, STATIONS)
@@ -34,7 +35,7 @@ class View:
         self.renderer = Renderer(mode, self.length, fps, tuple(gages.values()))
         self.signals = list(setup.arm.sensors)
         self.bent = next((s for s in ("strain_base", "tip_deflection", "strain_mid") if s in self.signals), None)
-        self.setup = setup
+        self.setup, self.title = setup, title or f"{setup.task.name} · {setup.arm.name}"
         self.trace: deque[tuple[float, float]] = deque(maxlen=round(TRACE_TIME * setup.rate))
 
     def clear(self) -> None:
@@ -58,7 +59,7 @@ class View:
                 target=float(own[at.TARGET]),
                 command=float(own[at.COMMAND]) / batch.limit,
                 trace=(times, values),
-                title=f"{self.setup.task.name} · {self.setup.arm.name}",
+                title=self.title,
             )
         )
 

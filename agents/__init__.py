@@ -1,0 +1,1 @@
+"""Controllers and policies at work: evaluation on fixed sets of arms."""

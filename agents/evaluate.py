@@ -1,0 +1,106 @@
+"""Evaluate controllers on fixed sets of arms: python -m agents.evaluate writes results/baselines/."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from joblib import Parallel, delayed
+
+from agents.measures import MEASURES, measure
+from agents.report import table_of
+from agents.rollout import roll_out
+from agents.sets import FIRST_SEED, SETS
+from agents.statistics import mean_interval, paired_difference
+from flexarm_env import Arm, InputError, __version__
+from flexarm_env.cli.outputs import commit, write_whole
+from flexarm_env.controllers import CONTROLLERS, make_controller
+from flexarm_env.errors import did_you_mean
+from flexarm_env.tasks import TASKS
+
+FOLDER = Path(__file__).resolve().parent.parent / "results" / "baselines"
+REFERENCE = "pd"
+RATE = 200.0
+
+
+def evaluate_controller(name: str, task: str, arms: str, arm: str, count: int) -> dict[str, np.ndarray]:
+    """Return each measure (arms,) of a controller that believes in the nominal arm."""
+    nominal = Arm.load(arm)
+    controller = make_controller(name, nominal, 1.0 / RATE)
+    return measure(roll_out(controller, TASKS[task], nominal, SETS[arms], count, RATE), TASKS[task])
+
+
+def evaluate(names: Sequence[str], arm: str, count: int, jobs: int) -> dict[str, Any]:
+    """Return the cells of all controllers, tasks and sets: each measure's mean and interval, and its difference from PD's."""
+    cells = [(task, arms, name) for task in TASKS for arms in SETS for name in names]
+    tasks = (delayed(evaluate_controller)(name, task, arms, arm, count) for task, arms, name in cells)
+    found: dict[tuple[str, str, str], dict[str, np.ndarray]] = {}
+    began = time.perf_counter()
+    for cell, values in zip(cells, Parallel(n_jobs=jobs, return_as="generator")(tasks), strict=True):
+        found[cell] = values
+        done = f"{len(found)} of {len(cells)}: {' · '.join(cell)}"
+        print(f"\r{time.perf_counter() - began:4.0f} s  {done:<60}", end="", file=sys.stderr, flush=True)
+    print(file=sys.stderr)
+    return {task: {arms: {name: _cell(found, task, arms, name) for name in names} for arms in SETS} for task in TASKS}
+
+
+def _cell(found: Mapping[tuple[str, str, str], Mapping[str, np.ndarray]], task: str, arms: str, name: str) -> dict[str, Any]:
+    cell: dict[str, Any] = {}
+    reference = found.get((task, arms, REFERENCE))
+    for key, values in found[task, arms, name].items():
+        mean, low, high = mean_interval(values)
+        cell[key] = {"mean": mean, "low": low, "high": high}
+        if reference is not None and name != REFERENCE:
+            mean, low, high = paired_difference(values, reference[key])
+            cell[key]["less_than_pd"] = {"mean": -mean, "low": -high, "high": -low}
+    return cell
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Evaluate, write the JSON file and the table, and return the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m agents.evaluate", description=__doc__)
+    parser.add_argument("--controllers", nargs="+", default=list(CONTROLLERS), metavar="NAME", help="all by default")
+    parser.add_argument("--arm", default="thesis", help="name or file of the arm; thesis by default")
+    parser.add_argument("--count", type=int, default=100, help="arms in each set; 100 by default")
+    parser.add_argument("--jobs", type=int, default=2, help="processes; 2 by default")
+    parser.add_argument("--save", type=Path, default=FOLDER, help="folder of the results; results/baselines by default")
+    asked = parser.parse_args(arguments)
+    try:
+        for name in asked.controllers:
+            if name not in CONTROLLERS:
+                raise InputError(f"no controller '{name}'{did_you_mean(name, CONTROLLERS)}")
+        if asked.count < 1 or asked.jobs < 1:
+            raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
+        Arm.load(asked.arm)
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 2
+    began = time.perf_counter()
+    cells = evaluate(asked.controllers, asked.arm, asked.count, asked.jobs)
+    result = {
+        "command": f"python -m agents.evaluate --arm {asked.arm} --count {asked.count}",
+        "version": __version__,
+        "commit": commit(),
+        "seed": FIRST_SEED,
+        "seconds": round(time.perf_counter() - began, 1),
+        "arms": asked.count,
+        "measures": {name: {"unit": unit, "meaning": meaning} for name, (unit, meaning) in MEASURES.items()},
+        "sets": {name: found.meaning for name, found in SETS.items()},
+        "controllers": {name: CONTROLLERS[name].meaning for name in asked.controllers},
+        "cells": cells,
+    }
+    asked.save.mkdir(parents=True, exist_ok=True)
+    write_whole(asked.save / "baselines.json", json.dumps(result, indent=1, ensure_ascii=False) + "\n")
+    write_whole(asked.save / "baselines.md", table_of(result))
+    print(f"{asked.save / 'baselines.md'}: {len(asked.controllers)} controllers in {result['seconds']} s")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

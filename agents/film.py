@@ -1,0 +1,71 @@
+"""Two controllers side by side on one task, as a GIF: python -m agents.film writes results/baselines/pd-dual.gif."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import gymnasium as gym
+import numpy as np
+from PIL import Image
+
+from agents.evaluate import FOLDER
+from agents.sets import FIRST_SEED
+from flexarm_env import Arm
+from flexarm_env.controllers import make_controller
+from flexarm_env.env import FlexArmEnv
+
+#: Pictures per second, and the width of one of the two pictures.
+RATE, WIDTH = 20, 400
+COLOURS = 48
+
+
+def pictures(name: str, env_id: str, arm: str) -> list[Image.Image]:
+    """Return what a controller does in one episode, one picture every 1 / RATE seconds."""
+    env = gym.make(env_id, arm=arm, physical=True, render_mode="rgb_array")
+    bare = env.unwrapped
+    assert isinstance(bare, FlexArmEnv)
+    interval = 1.0 / bare.setup.rate
+    controller = make_controller(name, Arm.load(arm), interval)
+    controller.reset()
+    bare.title = f"{bare.setup.task.name}: {name.replace('_', ' ')}"
+    observation, _ = env.reset(seed=FIRST_SEED)
+    every = round(1.0 / (RATE * interval))
+    found, over, sample = [], False, 0
+    while not over:
+        if sample % every == 0:
+            frame = Image.fromarray(np.asarray(env.render()))
+            found.append(frame.resize((WIDTH, WIDTH), Image.Resampling.LANCZOS))
+        observation, _, terminated, truncated, _ = env.step(controller.action(observation))
+        over, sample = terminated or truncated, sample + 1
+    env.close()
+    return found
+
+
+def film(names: tuple[str, str], env_id: str, arm: str, path: Path) -> None:
+    """Write a GIF of two controllers side by side."""
+    both = []
+    for left, right in zip(*(pictures(name, env_id, arm) for name in names), strict=False):
+        frame = Image.new("RGB", (2 * WIDTH, WIDTH))
+        frame.paste(left, (0, 0))
+        frame.paste(right, (WIDTH, 0))
+        both.append(frame)
+    palette = both[-1].quantize(COLOURS)  # one for all, taken where the hub sticks and every colour is there
+    both = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in both]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    both[0].save(path, save_all=True, append_images=both[1:], duration=1000 // RATE, loop=0, optimize=True)
+
+
+def main() -> None:
+    """Make the film that README.md shows, or another."""
+    parser = argparse.ArgumentParser(prog="python -m agents.film", description=__doc__)
+    parser.add_argument("--controllers", nargs=2, default=["pd", "vibration_dual"], metavar="NAME")
+    parser.add_argument("--env", default="FlexArm/Slew-v0", help="id of the environment")
+    parser.add_argument("--arm", default="thesis", help="name or file of the arm")
+    parser.add_argument("--save", type=Path, default=FOLDER / "pd-dual.gif")
+    asked = parser.parse_args()
+    film(tuple(asked.controllers), asked.env, asked.arm, asked.save)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,64 @@
+"""The tables of an evaluation, as Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+#: Measure, heading and digits of the columns.
+COLUMNS = (
+    ("settling_time", "settling [s]", 2),
+    ("unsettled", "unsettled [%]", 0),
+    ("overshoot", "overshoot [°]", 1),
+    ("steady_error", "steady error [°]", 2),
+    ("residual_strain", "residual strain [V]", 3),
+    ("peak_current", "peak [A]", 1),
+    ("energy", "energy [A² s]", 1),
+)
+
+
+def table_of(result: Mapping[str, Any]) -> str:
+    """Return the whole report: one table for each task and set, with 95 % intervals."""
+    lines = [
+        "# Baselines",
+        "",
+        f"`{result['command']}`, version {result['version']}, commit {result['commit']}, seed {result['seed']}.",
+        f"Means over {result['arms']} arms, the same for every controller, with 95 % bootstrap intervals over arms. An arm",
+        "that never settles counts with the whole stretch. Less is better everywhere.",
+        "",
+        *(f"- `{name}`: {meaning}" for name, meaning in result["controllers"].items()),
+        "",
+        *(f"- {name}: {value['meaning']} [{value['unit']}]" for name, value in result["measures"].items()),
+    ]
+    for task, sets in result["cells"].items():
+        for arms, cells in sets.items():
+            lines += ["", f"## {task}, {arms}: {result['sets'][arms]}", "", *_rows(cells)]
+    return "\n".join(lines) + "\n"
+
+
+def _rows(cells: Mapping[str, Any]) -> list[str]:
+    head = ["controller", *(heading for _, heading, _ in COLUMNS)]
+    rows = [_line(head), "|---|" + "---:|" * len(COLUMNS)]
+    for name, cell in cells.items():
+        rows.append(_line([f"`{name}`", *(_with_interval(cell[key], digits) for key, _, digits in COLUMNS)]))
+    return rows
+
+
+def _line(fields: Sequence[str]) -> str:
+    return "| " + " | ".join(fields) + " |"
+
+
+def _with_interval(value: Mapping[str, float], digits: int) -> str:
+    return f"{value['mean']:.{digits}f} ({value['low']:.{digits}f} to {value['high']:.{digits}f})"
+
+
+def summary_of(result: Mapping[str, Any], task: str = "slew") -> str:
+    """Return a short table for README.md: settling, steady error and residual strain of one task on the three sets."""
+    columns = (("settling_time", "settling [s]", 2), ("steady_error", "error [°]", 2), ("residual_strain", "strain [V]", 3))
+    sets = list(result["cells"][task])
+    head = ["controller", *(f"{arms}: {heading}" for arms in sets for _, heading, _ in columns)]
+    lines = [_line(head), "|---|" + "---:|" * (len(head) - 1)]
+    for name in result["controllers"]:
+        values = [f"{result['cells'][task][arms][name][key]['mean']:.{digits}f}" for arms in sets for key, _, digits in columns]
+        lines.append(_line([f"`{name}`", *values]))
+    return "\n".join(lines) + "\n"

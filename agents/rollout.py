@@ -1,0 +1,56 @@
+"""Let a controller or policy drive a set of arms, one episode each."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from agents.measures import Trajectories
+from agents.sets import FIRST_SEED, ArmSet
+from flexarm_env.arm import Arm
+from flexarm_env.tasks import Task
+from flexarm_env.vector_env import FlexArmVectorEnv
+
+
+class Agent(Protocol):
+    """What can be evaluated: a controller of flexarm_env, or a policy that offers the same two methods."""
+
+    def reset(self, count: int | None = None) -> None:
+        """Start an episode of `count` arms."""
+
+    def action(self, observation: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
+        """Return shares of the limit (arms, 1) for physical observations (arms, signals + 1)."""
+
+
+def roll_out(agent: Agent, task: Task, arm: Arm, arms: ArmSet, count: int, rate: float = 200.0) -> Trajectories:
+    """Return what happens to `count` arms of a set, the same ones whoever drives them.
+
+    Args:
+        agent: that drives them.
+        task: at which they are.
+        arm: the nominal one.
+        arms: what differs from arm to arm.
+        count: of arms.
+        rate: control steps per second [Hz].
+    """
+    envs = FlexArmVectorEnv(count, task, arm, control_rate=rate, physical=True, **arms.arguments(arm))
+    observations, _ = envs.reset(seed=FIRST_SEED)
+    agent.reset(count)
+    batch, steps = envs.batch, envs.max_episode_steps
+    length = arm.constants.get("beam", {}).get("length", 1.0)
+    strain = list(arm.signals).index("strain_base") if "strain_base" in arm.signals else None
+    tip, target, strains, commands = (np.zeros((steps, count)) for _ in range(4))
+    failed = np.zeros(count, dtype=bool)
+    start = batch.info()["hub_angle"].copy()
+    for k in range(steps):
+        observations, _, terminated, _, _ = envs.step(agent.action(observations))
+        failed |= terminated
+        seen = batch.info()
+        tip[k] = seen["hub_angle"] + seen["tip_deflection"] / length
+        target[k], commands[k] = seen["target"], seen["command"]
+        if strain is not None:
+            strains[k] = batch.looks[:, strain]
+    envs.close()
+    return Trajectories(tip, target, strains, commands, failed, start, 1.0 / rate)
