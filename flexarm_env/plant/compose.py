@@ -200,7 +200,7 @@ def _module(text: str) -> ModuleType:
     if not path.exists():
         _write_whole(path, ast.unparse(_Compiled().visit(ast.parse(text))))
     if not any((path.parent / "__pycache__").glob(f"{name}*.nbi")):
-        logging.getLogger(__name__).warning("Compiling the plant, once for these effects: about 20 s")
+        logging.getLogger(__name__).warning("Compiling the plant, once for these effects: about 30 s")
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None
     assert spec.loader is not None

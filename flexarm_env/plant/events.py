@@ -73,6 +73,17 @@ def look(
 
 
 @njit
+def play_edge(d: Numbers, s: Numbers, mode: int, side: float) -> float:
+    """Return what the angles of held bodies and half the gap add to the windup towards a side: teeth touch from 0 up."""
+    held = 0.0
+    if is_stuck(mode, 1):
+        held += s[HELD_MOTOR]
+    if is_stuck(mode, 0):
+        held -= s[HELD_HUB]
+    return side * held - 0.5 * d[GAP]
+
+
+@njit
 def look_at_gears(
     d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, trial: int, force: int, size: int,
     start: float, end: float, side: float, best: float,
@@ -85,13 +96,8 @@ def look_at_gears(
     closed = s[GEAR_SIDE] == side
     if not closed and not mode & GEAR_OPEN:
         return best
-    held = 0.0
-    if is_stuck(mode, 1):
-        held += s[HELD_MOTOR]
-    if is_stuck(mode, 0):
-        held -= s[HELD_HUB]
     here = record(n, mode)
-    edge = side * held - 0.5 * d[GAP]
+    edge = play_edge(d, s, mode, side)
     row, weight, sign = here + n[MESH], here + n[MESH_WEIGHT], side
     if not closed:
         overlap = side * dot(d, here + n[WINDUP], s, HEADER, 2 * n[BLOCKS]) + edge
@@ -112,13 +118,8 @@ def look_at_overlap(
     """Return when teeth that parted while they overlapped are clear of each other; else `best`."""
     if not mode & GEAR_OPEN:
         return best
-    held = 0.0
-    if is_stuck(mode, 1):
-        held += s[HELD_MOTOR]
-    if is_stuck(mode, 0):
-        held -= s[HELD_HUB]
     here = record(n, mode)
-    edge = side * held - 0.5 * d[GAP]
+    edge = play_edge(d, s, mode, side)
     if side * dot(d, here + n[WINDUP], s, HEADER, 2 * n[BLOCKS]) + edge <= 0.0:
         return best
     return look(

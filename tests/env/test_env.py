@@ -31,7 +31,7 @@ def actions(steps: int, arms: int) -> np.ndarray:
 def test_the_checker_of_gymnasium_is_silent(id: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        check_env(gym.make(id).unwrapped, skip_render_check=True)
+        check_env(gym.make(id).unwrapped)
 
 
 def same(first: object, second: object) -> bool:

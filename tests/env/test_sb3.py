@@ -24,7 +24,7 @@ IDS = [f"FlexArm/{name}{variant}-v0" for name in ENVIRONMENTS for variant in VAR
 def test_the_checker_of_sb3_is_silent(id: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        check_env(gym.make(id).unwrapped, skip_render_check=True)
+        check_env(gym.make(id).unwrapped)
 
 
 @pytest.mark.parametrize("id", IDS)
