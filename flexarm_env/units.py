@@ -17,7 +17,7 @@ _TERM = r"[A-Za-zµμΩ°]+(?:_[A-Za-z]+)*(?: *(?:\^|\*\*) *-?\d|[²³])?"
 _UNIT = re.compile(rf"(?:1 */ *)?{_TERM}(?: *[*/·] *{_TERM}| +{_TERM})*")
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?:\s*$|\s*(?=[^\d\s.,:;-])(.*?)\s*$)")
 _LONGEST = 60
-# Without these pint reads Nm as "number metre" and the others not at all.
+# Without these pint reads Nm as "number metre", a count of yarn, and the others not at all.
 _COMPOUNDS = (
     "newton_meter = newton * meter = Nm",
     "newton_meter_second = newton * meter * second = Nms",
@@ -39,7 +39,8 @@ _COMMON = {
 def _registry() -> pint.UnitRegistry[float]:
     import pint  # a quarter of a second, which files in SI units need not pay
 
-    registry: pint.UnitRegistry[float] = pint.UnitRegistry()
+    # Nm takes the place of pint's own on purpose, which pint would otherwise warn of.
+    registry: pint.UnitRegistry[float] = pint.UnitRegistry(on_redefinition="ignore")
     for definition in _COMPOUNDS:
         registry.define(definition)
     return registry

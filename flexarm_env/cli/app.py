@@ -150,7 +150,7 @@ def simulate(
     save: Annotated[Path, typer.Option(metavar="FILE.csv", help="Write the recording.", show_default=False)],
     arm: ArmName = "thesis",
     input: Annotated[
-        str, typer.Option(metavar="INPUT", help="pulse, square, sweep, or a recording whose commands are played.")
+        str, typer.Option(metavar="INPUT", help="pulse, square, sweep, or a file of commands to play: time and input.")
     ] = "pulse",
     duration: Annotated[float, typer.Option(help="Seconds; a recording brings its own.")] = 10.0,
     rate: Annotated[float, typer.Option(help="Samples per second; a recording brings its own.")] = 500.0,

@@ -22,8 +22,14 @@ def known_effects(specs: Sequence[str]) -> Catalogue:
     return catalogue().extended(*map(load_effect, specs)) if specs else catalogue()
 
 
-def read_recordings(arm: Arm, paths: Sequence[Path], columns: Path | None) -> list[Recording]:
+def read_recordings(arm: Arm, paths: Sequence[Path], columns: Path | None, measured: bool = True) -> list[Recording]:
     """Return the recordings in files and folders, read by the arm's column map if there is no other.
+
+    Args:
+        arm: that they are of.
+        paths: files and folders.
+        columns: a column map of their own.
+        measured: whether they must hold a signal that the arm measures; commands alone are enough to be played.
 
     Raises:
         InputError: for a recording that cannot be read, or that does not fit the arm.
@@ -31,9 +37,9 @@ def read_recordings(arm: Arm, paths: Sequence[Path], columns: Path | None) -> li
     layout: Any = columns
     if columns is None and arm.columns and not all(map(_is_native, _files(paths))):
         layout = arm.columns
-    recordings = Recording.read_all(paths, layout, calibration(arm))
+    recordings = Recording.read_all(paths, layout, calibration(arm), measured)
     for recording in recordings:
-        _check_fits(arm, recording)
+        _check_fits(arm, recording, measured)
     return recordings
 
 
@@ -58,13 +64,13 @@ def _is_native(path: Path) -> bool:
     return "time [" in header or "time[" in header
 
 
-def _check_fits(arm: Arm, recording: Recording) -> None:
+def _check_fits(arm: Arm, recording: Recording, measured: bool) -> None:
     if recording.input_kind != arm.input:
         raise InputError(
             f"{recording.source}: holds {recording.input_kind}, but arm '{arm.name}' is driven by {arm.input}; "
             "name another arm with --arm"
         )
-    if not set(recording.signals) & set(arm.sensors):
+    if measured and not set(recording.signals) & set(arm.sensors):
         raise InputError(
             f"{recording.source}: has {', '.join(recording.signals)}, of which arm '{arm.name}' measures none; "
             "add a [sensors] table to the arm file"

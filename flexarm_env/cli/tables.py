@@ -10,7 +10,7 @@ from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from flexarm_env.identify.results import Addition, Comparison, Diagnosis, Estimate, Fit, Floats, Replay, Row
+from flexarm_env.identify.results import Addition, Comparison, Diagnosis, Estimate, Fit, Row
 from flexarm_env.pictures import words
 from flexarm_env.pictures.words import LABELS, NOTHING, PARTS, number
 
@@ -54,15 +54,16 @@ def comparison(result: Comparison) -> list[RenderableType]:
     """Return the tables of a comparison: by signal, by regime and band, by recording."""
     pooled = [row for row in result.rows if row.recording == "all"]
     signals = words.signals_of(list(result.noise))
-    by_signal = [_whole(result, signal) for signal in signals]
+    each = {(row.recording, row.signal): row for row in result.rows if row.part == "all"}
+    names = list(dict.fromkeys(row.recording for row in result.rows if row.recording != "all"))
+    whole = "all" if len(names) != 1 else names[0]
+    by_signal = [_whole(each.get((whole, signal)), signal, result.noise[signal]) for signal in signals]
     by_signal.append(["all", number(result.error), number(result.free_run), "", ""])
     found = {(row.part, row.signal): row for row in pooled}
     kinds = list(dict.fromkeys(row.part for row in pooled if row.part != "all"))
     parts = [p for p in PARTS if p in kinds] + [p for p in kinds if p not in PARTS]
     by_part = [[part, *(_error(found.get((part, s))) for s in [*signals, "all"])] for part in parts]
-    names = list(dict.fromkeys(row.recording for row in result.rows if row.recording != "all"))
-    each = {(row.recording, row.signal): row for row in result.rows if row.part == "all"}
-    by_recording = [[name, *(_error(each.get((name, s))) for s in [*signals, "all"])] for name in names]
+    by_recording = [[name, *(_error(each.get((name, s))) for s in [*signals, "all"])] for name in [*names, "all"]]
     heads = [*(LABELS[s][0] for s in signals), "all"]
     tables: list[RenderableType] = [
         Text(words.comparison(result), style="bold"),
@@ -74,21 +75,13 @@ def comparison(result: Comparison) -> list[RenderableType]:
     return [*tables, *_notes(result.notes)]
 
 
-def _whole(result: Comparison, signal: str) -> list[str]:
+def _whole(row: Row | None, signal: str, noise: float) -> list[str]:
     """Return the line of a signal over all recordings."""
-    runs = [r for r in result.replays if signal in r.measured]
-    measured = np.concatenate([r.measured[signal] for r in runs])
-    windows, free = (measured - np.concatenate([kind[signal] for kind in kinds]) for kinds in _kinds(runs))
-    spread = np.linalg.norm(measured - measured.mean())
-    noise = result.noise[signal]
-    errors = [number(float(np.sqrt(np.mean(off**2))) / noise) for off in (windows, free)]
-    fit = f"{100.0 * (1.0 - np.linalg.norm(free) / spread):.1f} %" if spread > 0.0 else NOTHING
     label, unit = LABELS[signal]
-    return [label, *errors, fit, f"{number(noise, 2)} {unit}"]
-
-
-def _kinds(runs: Sequence[Replay]) -> tuple[list[dict[str, Floats]], list[dict[str, Floats]]]:
-    return [r.windows for r in runs], [r.free for r in runs]
+    errors = [NOTHING] * 3
+    if row is not None:
+        errors = [number(row.error), number(row.free_run), f"{row.fit:.1f} %" if np.isfinite(row.fit) else NOTHING]
+    return [label, *errors, f"{number(noise, 2)} {unit}"]
 
 
 def _error(row: Row | None) -> str:
@@ -101,7 +94,7 @@ def _notes(notes: Sequence[str]) -> list[RenderableType]:
 
 def steps(steps_: Sequence[tuple[str, float]], free: Sequence[tuple[str, float]]) -> Table:
     """Return the error after each step."""
-    runs = dict(free)
+    runs = dict(free) | ({steps_[-1][0]: free[-1][1]} if steps_ and free else {})  # both end with the final model
     rows = [[name, number(value), number(runs[name]) if name in runs else NOTHING] for name, value in steps_]
     return table("Held-out error over noise (1 is perfect)", ["step", "windows of 1 s", "free run"], rows)
 

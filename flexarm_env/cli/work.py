@@ -127,7 +127,7 @@ def simulate(
 
     played: str | Recording = source
     if source not in EXPERIMENTS and Path(source).exists():
-        found = read_recordings(arm, [Path(source)], columns)
+        found = read_recordings(arm, [Path(source)], columns, measured=False)
         if len(found) != 1:
             raise InputError(f"{source}: holds {len(found)} recordings; name one")
         played = found[0]

@@ -61,8 +61,12 @@ class ColumnMap:
     matlab: bool = False
 
 
-def check_names(names: Sequence[str]) -> str:
+def check_names(names: Sequence[str], measured: bool = True) -> str:
     """Return the input ("current" or "voltage") of a recording that has these columns.
+
+    Args:
+        names: of the columns.
+        measured: whether there must be a signal.
 
     Raises:
         InputError: if time or every signal is missing, or there is not exactly one input.
@@ -74,7 +78,7 @@ def check_names(names: Sequence[str]) -> str:
         raise InputError("has neither 'current [A]' nor 'voltage [V]'; add the input that the arm got")
     if len(inputs) > 1:
         raise InputError("has both current and voltage; keep the one that the drive was commanded with")
-    if not any(name in names for name in SIGNALS):
+    if measured and not any(name in names for name in SIGNALS):
         raise InputError(f"has no measured signal; add at least one of {', '.join(SIGNALS)}")
     return inputs[0]
 
@@ -145,11 +149,15 @@ def check_calibration(calibration: Mapping[str, float]) -> None:
             raise InputError(f"calibration: '{name}' is {gain}; give its {UNITS[name]} per volt")
 
 
-def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap) -> ColumnMap:
+def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap, measured: bool = True) -> ColumnMap:
     """Return the column map of a TOML file with a `[columns]` table, or of such a table as a dict.
 
     Each FlexArm name holds `column` (header text), `index` (0-based) or `variable` (MATLAB), with `unit`,
     and `sign` or `scale` if needed; beside them stand `delimiter`, `header_prefix`, `skip_rows`, `decimal`.
+
+    Args:
+        columns: the file, or the table.
+        measured: whether it must map a signal.
 
     Raises:
         InputError: for a file that cannot be read, a key that does not exist, or a value that makes no sense.
@@ -157,7 +165,7 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
     if isinstance(columns, ColumnMap):
         return columns
     if isinstance(columns, Mapping):
-        return _column_map(columns)
+        return _column_map(columns, measured)
     path = Path(columns)
     try:
         document = tomllib.loads(path.read_bytes().decode("utf-8"))
@@ -169,12 +177,12 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
     if not isinstance(table, dict):
         raise InputError(f"{path}: has no [columns] table; put the map under a line [columns]")
     try:
-        return _column_map(table)
+        return _column_map(table, measured)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
 
 
-def _column_map(table: Mapping[str, Any]) -> ColumnMap:
+def _column_map(table: Mapping[str, Any], measured: bool) -> ColumnMap:
     sources: dict[str, Source] = {}
     kinds: set[str] = set()
     for key, value in table.items():
@@ -188,7 +196,7 @@ def _column_map(table: Mapping[str, Any]) -> ColumnMap:
     settings = {key: _typed(key, table[key], _SETTINGS[key]) for key in _SETTINGS if key in table}
     _check_settings(settings)
     try:
-        check_names(tuple(sources))
+        check_names(tuple(sources), measured)
     except InputError as error:
         raise InputError(f"[columns] {error}") from None
     return ColumnMap(sources, matlab=kinds == {"variable"}, **settings)

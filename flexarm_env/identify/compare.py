@@ -14,7 +14,6 @@ from flexarm_env.identify.preflight import preflight
 from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.refit import Progress
 from flexarm_env.identify.results import Comparison, Replay, Row
-from flexarm_env.plant.plant import Plant
 
 Floats = NDArray[np.float64]
 
@@ -38,25 +37,26 @@ def compare(arm: Arm, recordings: Sequence[Recording], progress: Progress | None
     """
     reduced, data = prepare(arm, recordings)
     notes, _ = preflight(reduced, data)
-    plant = reduced.plant(data.interval)
-    observers = window_observers(reduced, plant, data)
+    plants = data.plants(reduced)
+    observers = {payload: window_observers(reduced, plant, data) for payload, plant in plants.items()}
     replays = []
     for i, run in enumerate(data.runs):
         if progress:
             progress(i / len(data.runs), f"replaying {run.name}")
-        windows = window_replay(plant, run, observers, data.noise, data.interval)
+        plant = plants[run.payload]
+        windows = window_replay(plant, run, observers[run.payload], data.noise, data.interval)
         free = replay(plant, run, data.noise)
-        replays.append(_replay(run, data.signals, free, windows, regimes(plant, run, free, data)))
+        replays.append(_replay(run, data.signals, free, windows, regimes(run, data)))
     rows = list(_rows(replays, data))
     whole = rows[-1]
     noise = {s: float(n) for s, n in zip(data.signals, data.noise, strict=True)}
     return Comparison(arm, rows, replays, noise, whole.error, whole.free_run, notes)
 
 
-def regimes(plant: Plant, run: Run, free: Floats, data: Data) -> NDArray[np.int64]:
+def regimes(run: Run, data: Data) -> NDArray[np.int64]:
     """Return (samples,) 0 where the measured hub is stuck, 1 where it moves slowly, 2 where fast.
 
-    From the measured speed, or the slope of the measured angle; of the model's where neither is measured.
+    From the measured speed, or the slope of the measured angle; fast throughout where neither is measured.
     """
     if "motor_speed" in data.signals:
         column = data.signals.index("motor_speed")
@@ -85,6 +85,8 @@ def _rows(replays: Sequence[Replay], data: Data) -> Iterator[Row]:
     for signal, noise in zip(data.signals, data.noise, strict=True):
         for one in replays:
             yield _row(one.name, signal, "all", [one], {signal: float(noise)})
+        if len(replays) > 1:
+            yield _row("all", signal, "all", replays, {signal: float(noise)})
         for code, regime in enumerate(REGIMES):
             yield _row("all", signal, regime, replays, {signal: float(noise)}, code)
         yield from _band_rows(replays, signal, float(noise), data.interval)
@@ -113,8 +115,9 @@ def _row(
             free += float(np.sum(((measured - one.free[name][chosen]) / sigma) ** 2))
             count += int(chosen.sum())
     fit = float("nan")
-    if signal != "all" and recording != "all":
-        fit = fit_percent(replays[0].measured[signal], replays[0].free[signal])
+    if signal != "all" and regime is None:
+        measured, free_run = ([one.measured[signal] for one in replays], [one.free[signal] for one in replays])
+        fit = fit_percent(np.concatenate(measured), np.concatenate(free_run))
     if not count:
         return Row(recording, signal, part, float("nan"), float("nan"), fit, 0)
     return Row(recording, signal, part, float(np.sqrt(windows / count)), float(np.sqrt(free / count)), fit, count)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
+from flexarm_env.identify.load import check_load, loaded_plants, payload_of
 from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.start import Start, find_start, place_at_start
 from flexarm_env.plant.plant import NO_INTERVALS, Plant
@@ -30,7 +31,18 @@ FEWEST_SAMPLES = 50
 
 @dataclass(frozen=True)
 class Run:
-    """One recording as arrays: command (samples,), measured (samples, signals), times, and where it is held out."""
+    """One recording as arrays.
+
+    Attributes:
+        name: of the recording.
+        time: (samples,) [s].
+        command: (samples,) [A or V].
+        measured: (samples, signals), SI units.
+        intervals: (samples,) times to the next sample [s] where sampling is uneven, else empty.
+        train: (samples,) what fits see.
+        start: what its first samples say of its state.
+        payload: known mass at the tip [kg], beside what the arm has there.
+    """
 
     name: str
     time: Floats
@@ -39,6 +51,7 @@ class Run:
     intervals: Floats
     train: NDArray[np.bool_]
     start: Start
+    payload: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -63,6 +76,10 @@ class Data:
     def fitted(self) -> list[Run]:
         """The runs cut down to the part that fits see."""
         return [_cut(run, int(run.train.sum())) for run in self.runs]
+
+    def plants(self, arm: Arm) -> dict[float, Plant]:
+        """Return an arm's plants by the payload [kg] of the runs, which carry it."""
+        return loaded_plants(arm, (run.payload for run in self.runs), self.interval)
 
 
 def everything(data: Data) -> Data:
@@ -96,6 +113,7 @@ def prepare(arm: Arm, recordings: Sequence[Recording]) -> tuple[Arm, Data]:
         if recording.input_kind != arm.input:
             other = next(kind for kind in INPUTS if kind != arm.input)
             raise InputError(f"{recording.name} holds {other}, but arm '{arm.name}' is driven by {arm.input}")
+        check_load(arm, recording)
         if len(recording) < FEWEST_SAMPLES:
             raise InputError(f"{recording.name} has {len(recording)} samples; at least {FEWEST_SAMPLES} are needed")
     intervals = [r.sample_time for r in recordings]
@@ -159,6 +177,7 @@ def _run(recording: Recording, measured: Floats, signals: list[str], noise: Floa
         intervals=np.append(steps, interval) if uneven else NO_INTERVALS,
         train=train,
         start=find_start(time, measured, signals, noise),
+        payload=payload_of(recording),
     )
 
 

@@ -16,6 +16,8 @@ def preflight(arm: Arm, data: Data) -> tuple[list[str], bool]:
     """Return what a person should know, a line each, and whether the data are too poor to judge the arm."""
     notes = []
     for run in data.runs:
+        if run.payload:
+            notes.append(f"{run.name}: the arm carries the {run.payload:g} kg that the recording states as its payload")
         if len(run.intervals):
             notes.append(f"{run.name}: sampled unevenly, {run.intervals.min():.4g} to {run.intervals.max():.4g} s")
         at_limit = np.abs(run.command) >= 0.999 * np.abs(run.command).max()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,7 +44,7 @@ class Problem:
     held_out: bool = False
 
     def __post_init__(self) -> None:
-        self._gains: dict[tuple[int, int], Floats] = {}
+        self._gains: dict[tuple[float, int, int], Floats] = {}
         self.prior = np.array([c.prior for c in self.coordinates])
 
     def weigh(self, arm: Arm, held: bool = True) -> None:
@@ -79,12 +79,16 @@ class Problem:
         return self._errors(arm, self.data.fitted)
 
     def _errors(self, arm: Arm, runs: Sequence[Run]) -> list[Floats]:
-        plant = arm.plant(self.data.interval)
-        gains = self._gains_for(plant) if self.torque_noise > 0.0 else None
-        return [run.measured - replay(plant, run, self.data.noise, gains) for run in runs]
+        plants = self.data.plants(arm)
+        errors = []
+        for run in runs:
+            plant = plants[run.payload]
+            gains = self._gains_for(plant, run.payload) if self.torque_noise > 0.0 else None
+            errors.append(run.measured - replay(plant, run, self.data.noise, gains))
+        return errors
 
-    def _gains_for(self, plant: Plant) -> Floats:
-        key = (plant.modes, plant.states)
+    def _gains_for(self, plant: Plant, payload: float) -> Floats:
+        key = (payload, plant.modes, plant.states)
         if key not in self._gains:
             self._gains[key] = physical_gains(plant, self.data.noise, self.torque_noise, self.data.interval)
         return self._gains[key]
@@ -110,17 +114,18 @@ class Score:
 
 def score(arm: Arm, data: Data, held_out: bool = True) -> Score:
     """Return the errors of an arm on what was held out, or on what was fitted."""
-    plant = arm.plant(data.interval)
+    plants = data.plants(arm)
     own = arm.constants["drive"]["torque_noise"]
     if own > 0.0:
-        return _score_innovations(arm, plant, data, own, held_out)
-    observers = window_observers(arm, plant, data)
+        return _score_innovations(plants, data, own, held_out)
+    observers = {payload: window_observers(arm, plant, data) for payload, plant in plants.items()}
     totals = np.zeros(2)
     count = 0
     for run in data.runs:
         rows = ~run.train if held_out else run.train
+        plant = plants[run.payload]
         for i, replayed in enumerate(
-            (window_replay(plant, run, observers, data.noise, data.interval), replay(plant, run, data.noise))
+            (window_replay(plant, run, observers[run.payload], data.noise, data.interval), replay(plant, run, data.noise))
         ):
             scaled = (run.measured[rows] - replayed[rows]) / data.noise
             totals[i] += np.sum(np.nan_to_num(scaled, nan=1e6) ** 2)
@@ -129,14 +134,17 @@ def score(arm: Arm, data: Data, held_out: bool = True) -> Score:
     return Score(float(windows), float(free))
 
 
-def _score_innovations(arm: Arm, plant: Plant, data: Data, torque_noise: float, held_out: bool) -> Score:
-    gains = physical_gains(plant, data.noise, torque_noise, data.interval)
-    sigma = innovation_sigma(plant, data.noise, torque_noise, data.interval)
+def _score_innovations(plants: Mapping[float, Plant], data: Data, torque_noise: float, held_out: bool) -> Score:
+    gains, sigmas = (
+        {payload: made(plant, data.noise, torque_noise, data.interval) for payload, plant in plants.items()}
+        for made in (physical_gains, innovation_sigma)
+    )
     totals = np.zeros(2)
     count = 0
     for run in data.runs:
         rows = ~run.train if held_out else run.train
-        nudged = (run.measured - replay(plant, run, data.noise, gains)) / sigma
+        plant = plants[run.payload]
+        nudged = (run.measured - replay(plant, run, data.noise, gains[run.payload])) / sigmas[run.payload]
         free = (run.measured - replay(plant, run, data.noise)) / data.noise
         totals += [np.sum(np.nan_to_num(part[rows], nan=1e6) ** 2) for part in (nudged, free)]
         count += int(rows.sum()) * len(data.signals)

@@ -89,8 +89,13 @@ def read_bytes(path: Path) -> bytes:
     return content
 
 
-def read_text_table(content: bytes, columns: ColumnMap | None) -> Table:
+def read_text_table(content: bytes, columns: ColumnMap | None, measured: bool = True) -> Table:
     """Return the table of a text file: a native FlexArm CSV, or a foreign one by its column map.
+
+    Args:
+        content: of the file.
+        columns: its column map, if it is foreign.
+        measured: whether it must hold a signal.
 
     Raises:
         InputError: naming row (line of the file, counted from 1) and column.
@@ -100,7 +105,7 @@ def read_text_table(content: bytes, columns: ColumnMap | None) -> Table:
     first, conditions = _preamble(lines, layout.skip_rows)
     header, body = _header(lines, first, layout)
     sources = native_sources(header) if columns is None else _places(header, layout)
-    check_names(tuple(sources))
+    check_names(tuple(sources), measured)
     numbers = [row for row in range(body, len(lines)) if lines[row].strip()]
     if not numbers:
         raise InputError(f"has no samples after row {body}; it needs at least two rows of numbers")

@@ -49,7 +49,7 @@ class Recording:
         input_kind: "current" or "voltage".
         command: (n,) [A or V], what the drive was commanded.
         signals: (n,) each, by name: arm_angle [rad], motor_speed [rad/s], strain_mid [V], strain_base [V],
-            tip_deflection [m].
+            tip_deflection [m]; none in commands that are only to be played.
         reference: (n,) [rad] what the arm angle was to follow, or None.
         conditions: known conditions in SI, such as payload [kg]; `start` [s] is how long the run had gone on
             before the first sample.
@@ -133,26 +133,33 @@ class Recording:
             raise InputError(f"{name}: {error}") from None
 
     @classmethod
-    def read(cls, path: PathLike, columns: Columns | None = None, calibration: Mapping[str, float] | None = None) -> Recording:
+    def read(
+        cls,
+        path: PathLike,
+        columns: Columns | None = None,
+        calibration: Mapping[str, float] | None = None,
+        measured: bool = True,
+    ) -> Recording:
         """Return the recording in a CSV file, or by a column map in any text table or .mat file.
 
         Args:
             path: the file. Its time is shifted to start at 0.
             columns: for a foreign file, its `[columns]` table: a TOML file that has one, or a dict.
             calibration: SI per volt for signals that the file has in volts, such as {"arm_angle": 2.0}.
+            measured: whether the file must hold a signal; False takes commands alone, to be played.
 
         Raises:
             InputError: for anything that is not such a file: one line with file, row and column.
         """
-        layout = None if columns is None else load_columns(columns)
+        layout = None if columns is None else load_columns(columns, measured)
         gains = dict(calibration or {})
         check_calibration(gains)
         path = Path(path)
         try:
             content = read_bytes(path)
-            table = _table(path, content, layout)
+            table = _table(path, content, layout, measured)
             arrays = {name: _si(name, table, gains) for name in table.values}
-            recording = _recording(path.stem, arrays, table.conditions, table.lines)
+            recording = _recording(path.stem, arrays, table.conditions, table.lines, measured)
         except InputError as error:
             raise fault(path, error) from None
         return replace(recording, source=str(path), sha256=hashlib.sha256(content).hexdigest())
@@ -163,17 +170,18 @@ class Recording:
         paths: PathLike | Iterable[PathLike],
         columns: Columns | None = None,
         calibration: Mapping[str, float] | None = None,
+        measured: bool = True,
     ) -> list[Recording]:
         """Return the recordings in files and folders; a folder stands for its CSV files, sorted by name.
 
-        Where names would come twice, they have the folder's name before them.
+        Where names would come twice, they have the folder's name before them. Arguments as `read`.
 
         Raises:
             InputError: as `read`; for a folder without CSV files; for a file named twice.
         """
         files = _files([paths] if isinstance(paths, (str, os.PathLike)) else paths)
-        layout = None if columns is None else load_columns(columns)
-        recordings = [cls.read(file, layout, calibration) for file in files]
+        layout = None if columns is None else load_columns(columns, measured)
+        recordings = [cls.read(file, layout, calibration, measured) for file in files]
         return _distinct(recordings)
 
     def write(self, path: PathLike) -> None:
@@ -217,9 +225,9 @@ class Recording:
         )
 
 
-def _table(path: Path, content: bytes, layout: ColumnMap | None) -> Table:
+def _table(path: Path, content: bytes, layout: ColumnMap | None, measured: bool) -> Table:
     if path.suffix.lower() != ".mat":
-        return read_text_table(content, layout)
+        return read_text_table(content, layout, measured)
     if layout is None:
         raise InputError("a .mat file needs a [columns] table that names its variables")
     if not layout.matlab:
@@ -245,12 +253,15 @@ def _array(name: str, values: ArrayLike) -> Floats:
     return array.astype(np.float64)
 
 
-def _recording(name: str, arrays: dict[str, Floats], conditions: dict[str, float], lines: Sequence[int]) -> Recording:
+def _recording(
+    name: str, arrays: dict[str, Floats], conditions: dict[str, float], lines: Sequence[int], measured: bool = True
+) -> Recording:
     """Return a recording of (n,) arrays in SI, by column name, after checking them.
 
-    `lines` has the line of each sample in its file, for messages; it is empty where there is none.
+    `lines` has the line of each sample in its file, for messages; it is empty where there is none. `measured` tells
+    whether there must be a signal.
     """
-    kind = check_names(tuple(arrays))
+    kind = check_names(tuple(arrays), measured)
     lengths = {column: len(values) for column, values in arrays.items()}
     if len(set(lengths.values())) > 1:
         raise InputError(f"lengths differ ({lengths}); give arrays of one length")

@@ -64,7 +64,7 @@ class Row:
     """One line of a comparison: the errors of one signal in one part of the data.
 
     Attributes:
-        recording: its name, or "all".
+        recording: its name, or "all" for all of several taken together.
         signal: its name, or "all".
         part: "all", a regime ("moving fast", "moving slowly", "stuck") or a frequency band ("0-2 Hz", …).
         error: rms error over the noise's standard deviation, in windows of 1 s from estimated states; 1 is perfect.

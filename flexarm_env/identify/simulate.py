@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.identify.load import check_load, loaded, payload_of
 from flexarm_env.identify.recording import Recording
 from flexarm_env.plant import layout
 
@@ -61,7 +62,8 @@ def simulate(
         arm: with its sensors' noise, steps and dead times.
         input: "pulse" (open loop: 3 A from 0.5 to 1.0 s, then pulses of random size and time), "square" (PD to ±50° at
             0.2 Hz), "sweep" (slow PD motion and tones of random phase in the command), or a recording, or the path of
-            one, whose commands are played. Sizes are for a drive of 5 A and scale with the arm's limit.
+            one, whose commands are played, with its payload; it needs no signals. Sizes are for a drive of 5 A and
+            scale with the arm's limit.
         duration: [s]; a recording brings its own.
         rate: samples per second [Hz]; a recording brings its own.
         seed: of noise, pulses and phases.
@@ -71,6 +73,7 @@ def simulate(
     Raises:
         InputError: for an input that does not exist or does not fit the arm.
     """
+    conditions: dict[str, float] = {}
     if isinstance(input, str) and input in EXPERIMENTS:
         count = _samples(duration, rate)
         rig = _Rig(arm, rate, count, _noise(arm, count, seed, input) if noise else None)
@@ -86,9 +89,12 @@ def simulate(
         time, commands, reference, label = source.time, source.command, source.reference, source.name
         draws = _noise(arm, len(time), seed, label) if noise else None
         even, interval = _sampling(time)
-        readings = _Rig(arm, 1.0 / interval, len(time), draws).replay(commands, () if even else (np.diff(time),))
+        conditions = {key: value for key, value in source.conditions.items() if key == "payload"}
+        check_load(arm, source)
+        carrying = loaded(arm, payload_of(source))
+        readings = _Rig(carrying, 1.0 / interval, len(time), draws).replay(commands, () if even else (np.diff(time),))
     signals = {signal: readings[:, i] for i, signal in enumerate(arm.signals)}
-    return Recording.from_arrays(name or label, time, arm.input, commands, signals, reference)
+    return Recording.from_arrays(name or label, time, arm.input, commands, signals, reference, conditions)
 
 
 def _samples(duration: float, rate: float) -> int:
@@ -111,7 +117,7 @@ def _sampling(time: Floats) -> tuple[bool, float]:
 def _read(path: str | os.PathLike[str]) -> Recording:
     if isinstance(path, str) and not Path(path).exists() and not Path(path).suffix:
         raise InputError(f"no input '{path}': neither an experiment nor a file{did_you_mean(path, EXPERIMENTS)}")
-    return Recording.read(path)
+    return Recording.read(path, measured=False)
 
 
 def _stream(seed: int, *key: str) -> np.random.Generator:

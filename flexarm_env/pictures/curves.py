@@ -111,9 +111,8 @@ def loop(before: Comparison, after: Comparison, diagnosis: Diagnosis) -> Figure:
     _fit_height(bottom, start, start + ZOOM)
     bottom.set_xlabel("time [s]")
     _ranking(figure.add_subplot(grid[:, 1]), diagnosis.ranking[:BARS])
-    last = figure.add_subplot(grid[:, 2])
-    _falling(last, words.steps_of(diagnosis.error, diagnosis.effects), "")
-    last.set_title("3  The held-out error falls")
+    steps = words.steps_of(diagnosis.error, diagnosis.effects)
+    _falling(figure.add_subplot(grid[:, 2]), steps, "3  The held-out error falls")
     figure.align_ylabels([top, bottom])
     return figure
 
@@ -187,14 +186,16 @@ def _ranking(axes: Axes, candidates: Sequence[Candidate]) -> None:
 
 
 def _falling(axes: Axes, steps: Sequence[tuple[str, float]], title: str) -> None:
-    names = [name.replace("constants ", "constants\n").replace("_", " ") for name, _ in steps]
+    """Draw lying bars, since names of effects are long and stand beside theirs whole."""
+    names = [name.replace("_", " ").replace(" +", "\n+") for name, _ in steps]
     values = [value for _, value in steps]
     colours = [BEFORE, *[QUIET] * (len(steps) - 2), AFTER] if len(steps) > 1 else [BEFORE]
-    bars = axes.bar(names, values, color=colours, width=0.6)
-    axes.bar_label(bars, [words.number(value) for value in values], padding=2, color=INK)
-    axes.axhline(1.0, color=INK, lw=1.0, ls="--")
-    axes.annotate("noise", (1.01, 1.0), xycoords=("axes fraction", "data"), ha="left", va="center", fontsize=8)
-    axes.set_ylim(0.0, 1.15 * max([*values, 1.2]))
-    axes.set_ylabel("rms error / noise")
+    bars = axes.barh(names, values, color=colours, height=0.6)
+    axes.bar_label(bars, [words.number(value) for value in values], padding=3, color=INK)
+    axes.invert_yaxis()
+    axes.axvline(1.0, color=INK, lw=1.0, ls="--")
+    axes.set_xlim(0.0, 1.18 * max([*values, 1.2]))
+    axes.set_xlabel("rms error / noise (dashed: noise)")
     axes.set_title(title)
-    axes.grid(axis="x", visible=False)
+    axes.grid(axis="y", visible=False)
+    axes.tick_params(axis="y", length=0)

@@ -1,14 +1,19 @@
-"""One self-contained HTML page of a comparison or a diagnosis, with Plotly figures; it needs no network."""
+"""One self-contained HTML page of a comparison or a diagnosis, with Plotly figures; it needs no network.
+
+Plotly's library alone has 4.8 MB as text, so it and the figures lie in the page compressed, and the browser unpacks them.
+"""
 
 from __future__ import annotations
 
+import base64
+import gzip
+import math
 from collections.abc import Sequence
 from html import escape
 from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
-import plotly.io
 import plotly.offline
 from numpy.typing import NDArray
 from plotly.subplots import make_subplots
@@ -28,6 +33,27 @@ th.n, td.n { text-align: right; font-variant-numeric: tabular-nums; }
 footer { margin-top: 3rem; color: #666; font-size: .85rem; }
 """
 _TEMPLATE = "plotly_white"
+_CONFIG = '{"displaylogo":false,"responsive":true}'
+#: Curves are drawn in steps of the noise over this: what is finer is no information, and takes half the page.
+STEPS_PER_NOISE = 50.0
+_UNPACK = f"""
+async function unpack(place) {{
+  const bytes = Uint8Array.from(atob(place.textContent), c => c.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).text();
+}}
+(async () => {{
+  const library = document.createElement("script");
+  library.textContent = await unpack(document.getElementById("plotly"));
+  document.head.append(library);
+  for (const place of document.querySelectorAll("div.figure")) {{
+    const figure = JSON.parse(await unpack(place.firstElementChild));
+    await Plotly.newPlot(place, figure.data, figure.layout, {_CONFIG});
+  }}
+}})().catch(error => {{
+  for (const place of document.querySelectorAll("div.figure"))
+    place.textContent = `This browser cannot draw the figure (${{error}}); any of 2023 or later can.`;
+}});
+"""
 
 
 def page(before: Comparison, after: Comparison | None = None, diagnosis: Diagnosis | None = None) -> str:
@@ -55,9 +81,11 @@ def _document(title: str, parts: Sequence[str]) -> str:
     return (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
         f'<meta name="viewport" content="width=device-width"><style>{_CSS}</style>'
-        f"<script>{plotly.offline.get_plotlyjs()}</script></head>\n<body><h1>{escape(title)}</h1>\n"
+        f"</head>\n<body><h1>{escape(title)}</h1>\n"
         + "\n".join(parts)
-        + f"\n<footer>FlexArm {__version__}</footer></body></html>\n"
+        + f"\n<footer>FlexArm {__version__}</footer>\n"
+        + _packed(plotly.offline.get_plotlyjs(), ' id="plotly"')
+        + f"\n<script>{_UNPACK}</script></body></html>\n"
     )
 
 
@@ -77,9 +105,14 @@ def _about(diagnosis: Diagnosis) -> list[str]:
 def _html(figure: go.Figure, name: str) -> str:
     place = "figure-" + "".join(c if c.isalnum() else "-" for c in name)
     figure.update_layout(template=_TEMPLATE, font={"color": INK}, hovermode="x unified")
-    config = {"displaylogo": False, "responsive": True}
-    html: str = plotly.io.to_html(figure, full_html=False, include_plotlyjs=False, div_id=place, config=config)
-    return html
+    height = f"{figure.layout.height}px"
+    return f'<div class="figure" id="{place}" style="height:{height}">{_packed(figure.to_json())}</div>'
+
+
+def _packed(text: str, attributes: str = "") -> str:
+    """Return text as an element that no browser shows or runs."""
+    packed = base64.b64encode(gzip.compress(text.encode(), compresslevel=9, mtime=0)).decode()
+    return f'<script type="text/plain"{attributes}>{packed}</script>'
 
 
 def _list(lines: Sequence[str]) -> str:
@@ -110,7 +143,7 @@ def _estimates(found: Sequence[Estimate]) -> str:
 
 
 def _errors(result: Comparison) -> str:
-    rows = [row for row in result.rows if row.recording == "all"] or result.rows
+    rows = [row for row in result.rows if row.recording == "all" or len(result.replays) == 1]
     names = {signal: label for signal, (label, _) in words.LABELS.items()}
     cells = [[f"{names.get(r.signal, r.signal)}, {r.part}", words.number(r.error), words.number(r.free_run)] for r in rows]
     return _table(["signal, part", "windows of 1 s", "free run"], cells)
@@ -126,14 +159,17 @@ def _signals(old: Replay, new: Replay | None, noise: dict[str, float]) -> go.Fig
     for i, signal in enumerate(signals):
         label, unit = words.LABELS[signal]
         first = i == 0
-        _line(figure, 2 * i + 1, old.time, old.measured[signal], "measured", MEASURED, first, width=3.0)
+        step = noise[signal] / STEPS_PER_NOISE
+        _line(figure, 2 * i + 1, old.time, old.measured[signal], step, "measured", MEASURED, first, width=3.0)
         kinds.append("both")
         for name, colour, replay in models:
             for kind, curves in (("windows", replay.windows), ("free", replay.free)):
                 off = (replay.measured[signal] - curves[signal]) / noise[signal]
                 shown = kind == "windows"
-                _line(figure, 2 * i + 1, replay.time, curves[signal], name, colour, first, visible=shown)
-                _line(figure, 2 * i + 2, replay.time, off, f"{name}, residual", colour, False, visible=shown)
+                _line(figure, 2 * i + 1, replay.time, curves[signal], step, name, colour, first, visible=shown)
+                _line(
+                    figure, 2 * i + 2, replay.time, off, 1.0 / STEPS_PER_NOISE, f"{name}, residual", colour, False, visible=shown
+                )
                 kinds += [kind, kind]
         figure.update_yaxes(title_text=f"{label} [{unit}]", row=2 * i + 1)
         figure.update_yaxes(title_text="residual [σ]", row=2 * i + 2)
@@ -152,6 +188,7 @@ def _line(
     row: int,
     time: NDArray[np.float64],
     values: NDArray[np.float64],
+    step: float,
     name: str,
     colour: str,
     legend: bool,
@@ -159,13 +196,20 @@ def _line(
     visible: bool = True,
 ) -> None:
     line = {"color": colour, "width": width}
-    # The page's size: half the digits of a float64 are noise, and even times follow from the first two.
+    # The page's size: even times follow from the first two.
     steps = np.diff(time)
     even = np.allclose(steps, steps[0], rtol=1e-6)
-    x = {"x0": 0.0, "dx": round(float(time[-1]) / len(steps), 9)} if even else {"x": time.astype(np.float32)}
+    x = {"x0": 0.0, "dx": round(float(time[-1]) / len(steps), 9)} if even else {"x": np.round(time, 6).tolist()}
     look = {"name": name, "line": line, "mode": "lines", "showlegend": legend, "legendgroup": name, "visible": visible}
     trace: Any = go.Scattergl if len(time) > 20_000 else go.Scatter
-    figure.add_trace(trace(y=values.astype(np.float32), **x, **look), row=row, col=1)
+    figure.add_trace(trace(y=_in_steps(values, step), **x, **look), row=row, col=1)
+
+
+def _in_steps(values: NDArray[np.float64], step: float) -> list[float]:
+    """Return values to the last decimal that a step needs; a list, since Plotly packs arrays into text that is longer."""
+    finite = np.where(np.isfinite(values), values, np.nan)
+    rounded: list[float] = np.round(finite, max(-math.floor(math.log10(step)), 0)).tolist()
+    return rounded
 
 
 def _switch(kinds: Sequence[str]) -> dict[str, Any]:
@@ -190,9 +234,9 @@ def _falling(steps: Sequence[tuple[str, float]], free: Sequence[tuple[str, float
             row=1,
             col=column,
         )
-        figure.add_hline(y=1.0, line_dash="dash", annotation_text="noise", row=1, col=column)
-        figure.update_yaxes(title_text="rms error / noise", rangemode="tozero", row=1, col=column)
-    figure.update_layout(showlegend=False, height=340, margin={"t": 40, "r": 10})
+        figure.add_hline(y=1.0, line_dash="dash", row=1, col=column)
+        figure.update_yaxes(title_text="rms error / noise (dashed: noise)", rangemode="tozero", row=1, col=column)
+    figure.update_layout(showlegend=False, height=360, margin={"t": 60, "r": 10})
     return figure
 
 
@@ -208,5 +252,5 @@ def _ranking(diagnosis: Diagnosis) -> go.Figure:
         )
     )
     figure.update_xaxes(title_text="share of the excess error that it removes [%]")
-    figure.update_layout(height=100 + 28 * len(found), margin={"t": 10, "r": 10})
+    figure.update_layout(height=120 + 28 * len(found), margin={"t": 30, "r": 10})
     return figure

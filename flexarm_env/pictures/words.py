@@ -75,15 +75,17 @@ def signals_of(rows: Sequence[str]) -> list[str]:
 
 
 def steps_of(error: Mapping[str, float], effects: Sequence[str] = ()) -> list[tuple[str, float]]:
-    """Return the error after each step that was taken: as it came, refitted, with each effect."""
+    """Return the error after each step that was taken: as it came, refitted, with each effect.
+
+    The last effect's is the final error: what came after it, a last refit or another effect taken out again, is no step.
+    """
     steps = [("as given", error["nominal"])]
     if "refitted" in error:
         steps.append(("constants refitted", error["refitted"]))
-    known = [name for name in effects if name in error]
-    steps += [(f"+ {name}", error[name]) for name in known]
-    if "final" in error and effects:
-        if not known or error["final"] != error[known[-1]]:
-            steps.append((f"+ {effects[-1]}" if not known and len(effects) == 1 else "final", error["final"]))
+    if effects and "final" in error:
+        unnamed = [name for name in effects[:-1] if name not in error]
+        steps += [(f"+ {name}", error[name]) for name in effects[:-1] if name in error]
+        steps.append((" ".join(f"+ {name}" for name in [*unnamed, effects[-1]]), error["final"]))
     elif "final" in error and error["final"] != error.get("refitted"):
         steps.append(("final", error["final"]))
     return steps

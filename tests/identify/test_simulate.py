@@ -157,6 +157,18 @@ def test_a_file_serves_as_input(arm, tmp_path):
     assert bits(simulate(arm, str(tmp_path / "run.csv"), noise=False)) == bits(run)
 
 
+def test_a_file_of_commands_alone_serves_as_input(arm, tmp_path):
+    run = simulate(arm, "square", duration=1.0, noise=False)
+    rows = "".join(f"{t!r},{1000.0 * i!r}\n" for t, i in zip(run.time.tolist(), run.command.tolist(), strict=True))
+    (tmp_path / "commands.csv").write_text("time [s],current [mA]\n" + rows)
+    made = simulate(arm, tmp_path / "commands.csv", noise=False)
+    assert made.command == pytest.approx(run.command, rel=1e-15)
+    assert list(made.signals) == arm.signals
+    assert all(made.signals[s] == pytest.approx(run.signals[s], abs=1e-9) for s in arm.signals)
+    with pytest.raises(InputError, match="no measured signal"):
+        Recording.read(tmp_path / "commands.csv")
+
+
 @pytest.mark.parametrize("experiment", EXPERIMENTS)
 def test_another_drive_gets_commands_of_its_own_size(experiment):
     run = simulate(rigid(), experiment, duration=5.0)

@@ -1,0 +1,44 @@
+"""The command as a process: how heavy it is, and what reaches the shell."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import flexarm_env
+
+
+def process(*arguments, **changes) -> subprocess.CompletedProcess[str]:
+    program = "from flexarm_env.cli import main; main()"
+    environment = os.environ | {"PYTHONPATH": str(Path(flexarm_env.__file__).parents[1])} | changes
+    command = [sys.executable, "-c", program, *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
+
+
+def test_help_is_light():
+    program = "import sys; from flexarm_env.cli import run; run(['--help']); print(*sorted(sys.modules))"
+    environment = os.environ | {"PYTHONPATH": str(Path(flexarm_env.__file__).parents[1])}
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, env=environment)
+    modules = set(run.stdout.split())
+    # gymnasium, and numpy with it, is there: importing the package registers the environments
+    assert modules & {"numba", "scipy", "pint", "plotly", "matplotlib", "pandas", "pygame"} == set()
+    assert "diagnose" in run.stdout
+
+
+def test_the_command_s_exit_codes_reach_the_shell():
+    assert process("--version").stdout == f"flexarm {flexarm_env.__version__}\n"
+    assert process().returncode == 0
+    bad = process("compare", "no.csv")
+    assert (bad.returncode, bad.stdout, len(bad.stderr.splitlines())) == (2, "", 1)
+    plain = process("effects", "backlash", PYTHONIOENCODING="ascii", LC_ALL="C")
+    assert plain.returncode == 0, plain.stderr
+
+
+def test_a_reader_that_leaves_early_is_no_error():
+    program = "from flexarm_env.cli import main; main()"
+    command = f"{sys.executable} -c '{program}' effects | head -1"
+    environment = os.environ | {"PYTHONPATH": str(Path(flexarm_env.__file__).parents[1])}
+    run = subprocess.run(command, shell=True, capture_output=True, text=True, env=environment, check=False)
+    assert run.stderr == ""

@@ -1,0 +1,147 @@
+"""Recordings from arrays, their parts, and files that come back bit for bit."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from recording_files import example, same, save
+
+from flexarm_env.errors import InputError
+from flexarm_env.identify import readers
+from flexarm_env.identify.columns import SIGNALS, UNITS
+from flexarm_env.identify.recording import Recording
+
+
+@pytest.mark.parametrize(
+    ("changes", "wanted"),
+    [
+        ({"input_kind": "torque"}, "unknown input 'torque'"),
+        ({"signals": {"arm_angel": np.zeros(5)}}, "did you mean 'arm_angle'"),
+        ({"signals": {}}, "no measured signal"),
+        ({"command": np.zeros(4)}, "lengths differ"),
+        ({"command": np.zeros((5, 1))}, "vector"),
+        ({"command": [1, [2], 3, 4, 5]}, "vector"),
+        ({"command": list("abcde")}, "vector"),
+        ({"command": [1, 2, 3, 4, np.inf]}, "sample 5, column 'current'"),
+        ({"time": [0, 1, 2, 2, 3]}, "sample 4, column 'time': repeats"),
+        ({"time": [-1e308, 0, 1e308, 1.1e308, 1.2e308]}, "column 'time'"),
+        ({"conditions": {"payload": -1.0}}, "payload"),
+        ({"conditions": {"a b": 1.0}}, "'a b'"),
+    ],
+)
+def test_arrays_are_checked_as_files_are(changes: dict[str, Any], wanted: str) -> None:
+    with pytest.raises(InputError) as caught:
+        example(**changes)
+    assert wanted in str(caught.value)
+
+
+def test_arrays_are_copied() -> None:
+    command = np.zeros(5)
+    recording = example(command=command, time=2.0 + np.arange(5))
+    command[:] = 9
+    assert not recording.command.any()
+    assert recording.time[0] == 0
+
+
+def test_part_is_in_seconds_and_half_open() -> None:
+    recording = example(10, conditions={"payload": 0.5})
+    part = recording.part(0.3, 0.7)
+    assert part.command.tolist() == [3, 4, 5, 6]
+    assert part.time[0] == 0
+    assert part.conditions == {"payload": 0.5, "start": recording.time[3]}
+    assert part.part(0.1).conditions["start"] == pytest.approx(0.4)
+    assert same(recording.part(), recording)
+    lengths = [len(recording.part(0.0, 0.4)), len(recording.part(0.4))]
+    assert lengths == [4, 6]
+    with pytest.raises(InputError, match="fewer than two samples"):
+        recording.part(0.85)
+
+
+finite = st.floats(allow_nan=False, allow_infinity=False)
+
+
+@st.composite
+def recordings(draw: st.DrawFn) -> Recording:
+    n = draw(st.integers(2, 12))
+    column = arrays(np.float64, n, elements=finite)
+    steps = draw(arrays(np.float64, n - 1, elements=st.floats(1e-6, 1e3)))
+    names = draw(st.lists(st.sampled_from(list(SIGNALS)), min_size=1, unique=True))
+    return Recording.from_arrays(
+        "drawn",
+        np.concatenate([[0.0], np.cumsum(steps)]),
+        draw(st.sampled_from(["current", "voltage"])),
+        draw(column),
+        {name: draw(column) for name in names},
+        draw(st.none() | column),
+        draw(st.dictionaries(st.sampled_from(["payload", "temperature", "start"]), st.floats(0, 1e6))),
+    )
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(recordings())
+def test_a_written_recording_comes_back_bit_for_bit(tmp_path: Path, recording: Recording) -> None:
+    path = tmp_path / "again.csv"
+    recording.write(path)
+    assert same(Recording.read(path), recording)
+    part = recording.part()
+    part.write(path)
+    assert same(Recording.read(path), part)
+
+
+def test_the_header_is_the_contract(tmp_path: Path) -> None:
+    signals = {name: np.zeros(2) for name in reversed(SIGNALS)}
+    recording = example(2, signals=signals, reference=np.zeros(2), conditions={"payload": 0.3})
+    recording.write(tmp_path / "run.csv")
+    lines = (tmp_path / "run.csv").read_text().splitlines()
+    assert lines[0] == "# payload = 0.3 kg"
+    assert lines[1] == (
+        "time [s],current [A],arm_angle [rad],motor_speed [rad/s],strain_mid [V],strain_base [V],"
+        "tip_deflection [m],reference [rad]"
+    )
+    assert all(f"[{UNITS[name]}]" in lines[1] for name in signals)
+
+
+def test_writing_is_whole_or_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = save(tmp_path, "before")
+
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(InputError, match="No space left"):
+        example().write(path)
+    assert path.read_text() == "before"
+    assert os.listdir(tmp_path) == ["run.csv"]
+
+
+def test_writing_where_one_cannot(tmp_path: Path) -> None:
+    for path in (tmp_path / "none" / "run.csv", tmp_path):
+        with pytest.raises(InputError, match="cannot be written"):
+            example().write(path)
+    assert os.listdir(tmp_path) == []
+
+
+def test_reading_is_fast(tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    n = 5000
+    signals = {name: rng.normal(size=n) for name in ("arm_angle", "motor_speed", "strain_mid", "strain_base")}
+    example(n, signals=signals).write(tmp_path / "run.csv")
+
+    def seconds() -> float:
+        start = time.perf_counter()
+        Recording.read(tmp_path / "run.csv")
+        return time.perf_counter() - start
+
+    assert min(seconds() for _ in range(5)) < 0.05
+
+
+def test_the_largest_file_is_stated_in_bytes() -> None:
+    assert readers.LARGEST_FILE == 256 * 1024**2

@@ -1,0 +1,64 @@
+"""Text with units to plain SI numbers."""
+
+from __future__ import annotations
+
+import logging
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flexarm_env import units
+from flexarm_env.errors import InputError
+
+
+@pytest.mark.parametrize(
+    ("value", "target", "expected"),
+    [
+        ("0.0116 rad", "rad", 0.0116),
+        ("300g", "kg", 0.3),
+        (".5", "kg", 0.5),
+        (2, "kg", 2.0),
+        ("3 mNm", "N*m", 0.003),
+        ("3 Nm", "N*m/rad", 3.0),
+        ("0.02 Nms/rad", "N*m*s/rad", 0.02),
+        ("12 m/s²", "m/s**2", 12.0),
+    ],
+)
+def test_quantities(value: str | float, target: str, expected: float) -> None:
+    assert units.quantity(value, target) == pytest.approx(expected, rel=1e-15)
+
+
+def test_making_the_registry_warns_of_nothing(caplog):
+    with caplog.at_level(logging.DEBUG):
+        registry = units._registry.__wrapped__()
+    assert [r.getMessage() for r in caplog.records if r.levelno >= logging.WARNING] == []
+    assert registry.Quantity(1.0, "Nm").to("kg*m**2/s**2").magnitude == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("value", "target"),
+    [
+        ("", "kg"),
+        ("kg", "kg"),
+        ("1e999 kg", "kg"),
+        ("1 V", ""),
+        ("5 V/Hz", "V*s/rad"),
+        ("20 degC", "K"),
+        ("3 kg kg", "kg"),
+    ],
+)
+def test_quantities_that_are_refused(value: str, target: str) -> None:
+    with pytest.raises(InputError):
+        units.quantity(value, target)
+
+
+@given(st.text(max_size=20))
+def test_any_text_is_a_unit_or_refused(text: str) -> None:
+    message = ""
+    try:
+        assert np.isfinite(units.factor(text, "rad"))
+    except InputError as error:
+        message = str(error)
+    assert message.isprintable()
