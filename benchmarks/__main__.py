@@ -13,9 +13,9 @@ from typing import Any
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
-from benchmarks import diagnosis, plant, report, start  # noqa: E402
+from benchmarks import diagnosis, environments, plant, report, start  # noqa: E402
 
-PARTS = {"plant": plant, "start": start, "diagnosis": diagnosis}
+PARTS = {"plant": plant, "start": start, "diagnosis": diagnosis, "environments": environments}
 OUTPUT = Path(__file__).resolve().parent.parent / "results" / "bench" / "bench.json"
 
 

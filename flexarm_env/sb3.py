@@ -74,20 +74,20 @@ class FlexArmVecEnv(VecEnv):
     def step_wait(self) -> tuple[Array, Array, Array, list[dict[str, Any]]]:
         """Apply them; return observations, rewards, whether an episode is over, and infos."""
         envs = self.envs
-        lengths = envs.batch.own[:, SAMPLE] + 1.0
-        observations, rewards, terminated, truncated, info = envs.step(self.actions)
-        done = terminated | truncated
+        rewards, terminated, truncated = envs.move(self.actions)
+        done, last = envs.over, envs.batch.observations
         self.returns += rewards
         infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        elapsed = round(time.perf_counter() - self.began, 6)
         for i in np.flatnonzero(done):
-            elapsed = round(time.perf_counter() - self.began, 6)
             infos[i] = {
-                "terminal_observation": info["final_obs"][i],
+                "terminal_observation": last[i].copy(),
                 "TimeLimit.truncated": bool(truncated[i] and not terminated[i]),
-                "episode": {"r": float(self.returns[i]), "l": int(lengths[i]), "t": elapsed},
+                "episode": {"r": float(self.returns[i]), "l": int(envs.batch.own[i, SAMPLE]), "t": elapsed},
             }
             self.returns[i] = 0.0
-        return observations, rewards.astype(np.float32), done, infos
+        envs.restart()
+        return last.copy(), rewards.astype(np.float32), done, infos
 
     def close(self) -> None:
         """Let the arms go."""

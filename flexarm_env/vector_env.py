@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,13 +15,15 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.env.batch import Batch
-from flexarm_env.env.flexarm import find_arm, make_setup, refuse_unknown, spaces_of
+from flexarm_env.env.flexarm import ARGUMENTS, find_arm, make_setup, refuse_unknown, spaces_of
 from flexarm_env.env.kernel import REWARD, SAMPLE, TERMINATED
 from flexarm_env.env.variation import Disturbance, Range
 from flexarm_env.errors import InputError
 from flexarm_env.tasks import Task
 
 Array = NDArray[Any]
+
+VECTOR_ARGUMENTS = (*ARGUMENTS, "num_envs", "max_episode_steps", "autoreset_mode", "threads")
 
 
 class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
@@ -63,7 +66,7 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         render_mode: str | None = None,
         **unknown: Any,
     ) -> None:
-        refuse_unknown(unknown)
+        refuse_unknown(unknown, VECTOR_ARGUMENTS)
         for name, value in (("num_envs", num_envs), ("threads", threads), ("max_episode_steps", max_episode_steps)):
             if value is not None and not (isinstance(value, int | np.integer) and value >= 1):
                 raise InputError(f"{name} = {value!r}; give a whole number from 1 up")
@@ -127,18 +130,11 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
             gymnasium.error.ResetNeeded: before the first reset, or for arms whose episode is over and that wait for a reset.
             InputError: for actions of another shape, or that are not numbers.
         """
-        if not self.started:
-            raise gym.error.ResetNeeded("step before reset: call envs.reset() first")
-        batch, before = self.batch, self.over
+        before = self.over
         if self.autoreset_mode is AutoresetMode.DISABLED and before.any():
             raise gym.error.ResetNeeded('episodes are over: call envs.reset(options={"reset_mask": done}) first')
-        batch.asked[:] = _commands(actions, self.num_envs)
-        batch.asked *= batch.limit
-        batch.step()
-        rewards = batch.own[:, REWARD].copy()
-        terminated = batch.own[:, TERMINATED] > 0.0
-        truncated = batch.own[:, SAMPLE] >= self.max_episode_steps
-        self.over = terminated | truncated
+        rewards, terminated, truncated = self.move(actions)
+        batch = self.batch
         if self.autoreset_mode is AutoresetMode.NEXT_STEP and before.any():
             batch.reset(self.every[before])
             rewards[before], terminated[before], truncated[before] = 0.0, False, False
@@ -147,6 +143,30 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
             return self._same_step(rewards, terminated, truncated)
         return batch.observations.copy(), rewards, terminated, truncated, self._info(self.all)
 
+    def move(self, actions: Array) -> tuple[Array, Array, Array]:
+        """Apply actions (arms, 1) for one sample and start nothing anew; return rewards, terminated and truncated (arms,).
+
+        Raises:
+            gymnasium.error.ResetNeeded: before the first reset.
+            InputError: for actions of another shape, or that are not numbers.
+        """
+        if not self.started:
+            raise gym.error.ResetNeeded("step before reset: call envs.reset() first")
+        batch = self.batch
+        batch.asked[:] = _commands(actions, self.num_envs)
+        batch.asked *= batch.limit
+        batch.step()
+        rewards = batch.own[:, REWARD].copy()
+        terminated = batch.own[:, TERMINATED] > 0.0
+        truncated = batch.own[:, SAMPLE] >= self.max_episode_steps
+        self.over = terminated | truncated
+        return rewards, terminated, truncated
+
+    def restart(self) -> None:
+        """Start the next episode of every arm whose episode is over."""
+        self.batch.reset(self.every[self.over])
+        self.over = np.zeros(self.num_envs, dtype=bool)
+
     def _same_step(
         self, rewards: Array, terminated: Array, truncated: Array
     ) -> tuple[Array, Array, Array, Array, dict[str, Any]]:
@@ -154,18 +174,16 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         for i in self.every[over]:
             last[i] = self.batch.observations[i].copy()
         final = {"final_obs": last, "_final_obs": over.copy(), "final_info": self._info(over), "_final_info": over.copy()}
-        self.batch.reset(self.every[over])
-        self.over = np.zeros(self.num_envs, dtype=bool)
+        self.restart()
         return self.batch.observations.copy(), rewards, terminated, truncated, self._info(self.all) | final
 
     def _info(self, mask: Array) -> dict[str, Any]:
-        info: dict[str, Any] = {}
-        for name, values in self.batch.info().items():
-            kept = values > 0.0 if name == "stuck" else values.copy()
-            if mask is not self.all:
-                kept[~mask] = 0
-            info[name], info[f"_{name}"] = kept, mask.copy()
-        return info
+        info: dict[str, Any] = self.batch.info()
+        info["stuck"] = info["stuck"] > 0.0
+        if mask is not self.all:
+            for values in info.values():
+                values[~mask] = 0
+        return info | dict.fromkeys([f"_{name}" for name in info], mask.copy())
 
     def drawn_arm(self, arm: int) -> Arm:
         """Return arm number `arm` as it was drawn for its episode."""
@@ -188,11 +206,11 @@ def _commands(actions: Any, count: int) -> Array:
     shape = np.shape(actions)
     if shape != (count, 1):
         raise InputError(f"actions of shape {shape}; give one number from -1 to 1 for each arm, in shape ({count}, 1)")
-    values = np.asarray(actions, dtype=np.float64)[:, 0]
-    if not np.isfinite(values).all():
+    values: Array = np.asarray(actions, dtype=np.float64)[:, 0]
+    if not math.isfinite(values.sum()) and not np.isfinite(values).all():
         arm = int(np.argmin(np.isfinite(values)))
         raise InputError(f"action of arm {arm} = {values[arm]}; give numbers from -1 to 1")
-    return np.clip(values, -1.0, 1.0)
+    return np.minimum(np.maximum(values, -1.0), 1.0)
 
 
 def slew_vector(num_envs: int = 1, **arguments: Any) -> FlexArmVectorEnv:

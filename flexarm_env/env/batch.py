@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from flexarm_env.arm import Arm
 from flexarm_env.env import kernel as at
 from flexarm_env.env.kernel import after_step
+from flexarm_env.env.threads import Crew
 from flexarm_env.env.variation import Disturbance, Variation, hash_of
 from flexarm_env.errors import InputError
 from flexarm_env.plant.batch import TRUTH
@@ -22,12 +23,14 @@ from flexarm_env.tasks import REWARD_TERMS, Task
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-#: Readings end here: the range of the rig's converters and of its pot.
+THESIS_GEAR_RATIO = 1.5
+#: For the thesis's arm, readings end here: the range of the rig's converters and of its pot.
 LARGEST = {"arm_angle": 4.0 * math.pi, "motor_speed": 200.0, "strain_mid": 10.0, "strain_base": 10.0, "tip_deflection": 2.0}
 #: What normalised observations are divided by.
 SCALES = {"arm_angle": math.pi, "motor_speed": 5.0, "strain_mid": 2.0, "strain_base": 2.0, "tip_deflection": 0.2}
 #: Names of what an info holds, in the order of the columns that they are read from.
 TRUTH_NAMES = ("hub_angle", "hub_speed", "tip_deflection", "stuck")
+TERM_NAMES = tuple(f"reward_{name}" for name in REWARD_TERMS)
 MOST_RATE = 10_000.0
 
 
@@ -68,11 +71,19 @@ class Setup:
         """Return what readings and target are divided by (signals + 1,)."""
         if self.physical:
             return np.ones(len(self.arm.sensors) + 1)
-        return np.array([*(SCALES[s] for s in self.arm.sensors), SCALES["arm_angle"]])
+        return np.array([*(SCALES[s] * self._gearing(s) for s in self.arm.sensors), SCALES["arm_angle"]])
 
     def bounds(self) -> Floats:
         """Return the largest observation of each reading and of the target (signals + 1,)."""
-        return np.array([*(LARGEST[s] for s in self.arm.sensors), LARGEST["arm_angle"]]) / self.scales()
+        return self.largest() / self.scales()
+
+    def largest(self) -> Floats:
+        """Return where readings and target end (signals + 1,), SI units."""
+        return np.array([*(LARGEST[s] * self._gearing(s) for s in self.arm.sensors), LARGEST["arm_angle"]])
+
+    def _gearing(self, signal: str) -> float:
+        """How much faster the motor turns than that of the thesis's arm, where that is what is measured."""
+        return self.arm.constants["drive"]["gear_ratio"] / THESIS_GEAR_RATIO if signal == "motor_speed" else 1.0
 
 
 class Batch:
@@ -96,19 +107,21 @@ class Batch:
             raise InputError(f"arm '{setup.arm.name}' has a time offset ahead of its commands, which no environment can have")
         self.waiting, self.delayed = np.zeros((shift, count)), shift > 0
         self.observations = np.zeros((count, self.signals + 1), dtype=np.float32)
+        self.first_observation = self.observations[0]
         self.keys, self.seeds = np.zeros(count, dtype=np.uint64), np.zeros(count, dtype=np.uint64)
         self.episodes = np.zeros(count, dtype=np.int64)
         self.step_batch, self.layout = self.plant.kernel.step_batch, self.plant.layout
         self.first_state: Floats | None = None
-        bounds = np.linspace(0, count, max(min(threads, count), 1) + 1).astype(int)
-        self.parts = list(zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True))
-        self.pool = ThreadPoolExecutor(len(self.parts) - 1) if len(self.parts) > 1 else None
+        self.threads = max(min(threads, count), 1)
+        self.crew = Crew(self.threads) if self.threads > 1 else None
+        self.lead = count // self.threads
         self._allocate()
 
     def _allocate(self) -> None:
         """Lay out all numbers in one array: the kernels pay for each array that they are given."""
         setup, plant, count = self.setup, self.plant, self.count
-        depth = int(self.sensors[:, at.WHOLE_DELAY].max()) + 2
+        late = self.sensors[:, at.WHOLE_DELAY :].any()
+        depth = int(self.sensors[:, at.WHOLE_DELAY].max()) + 2 if late else 0
         own_constants = bool(setup.variation.ranges)
         shapes = {
             "settings": (at.SETTINGS,),
@@ -122,7 +135,7 @@ class Batch:
             "history": (count, depth, self.signals),
             "constants": (count if own_constants else 1, plant.constants.size),
             "states": (count, plant.state.size),
-            "scratch": (len(self.parts), plant.scratch.size),
+            "scratch": (self.threads, plant.scratch.size),
         }
         ends = np.cumsum([math.prod(shape) for shape in shapes.values()])
         first = dict(zip(shapes, [0, *ends[:-1].tolist()], strict=True))
@@ -152,9 +165,9 @@ class Batch:
 
     def close(self) -> None:
         """Let the threads go."""
-        if self.pool:
-            self.pool.shutdown()
-            self.pool = None
+        if self.crew:
+            self.crew.dismiss()
+            self.crew = None
 
     def reset(self, arms: Sequence[int] | Indices, seeds: Sequence[int | None] | None = None) -> None:
         """Start the next episode of some arms; with a seed, their first one of that seed."""
@@ -206,23 +219,34 @@ class Batch:
             self.commands[:] = self.waiting[0]
             self.waiting[:-1] = self.waiting[1:]
             self.waiting[-1] = self.asked
-        if self.pool is None:
-            self._step(0)
-            return
-        others = [self.pool.submit(self._step, part) for part in range(1, len(self.parts))]
-        self._step(0)
-        wait(others)
+        if self.crew is None:
+            self._step(0, 0, self.count)
+        else:
+            self._share(self.crew)
 
-    def _step(self, part: int) -> None:
-        first, last = self.parts[part]
+    def _share(self, crew: Crew) -> None:
+        """Step the arms on all threads.
+
+        Helpers take some ten microseconds to wake up, and so does the caller where it has to wait for them. It takes as
+        many arms as keep it busy until they are done, by trial: fewer while they are done first, more when they are not.
+        """
+        each = (self.count - self.lead) / (self.threads - 1)
+        bounds = [0, *(self.count - round(each * left) for left in range(self.threads - 1, -1, -1))]
+        parts = [partial(self._step, part, bounds[part], bounds[part + 1]) for part in range(self.threads)]
+        some = max(self.count // 128, 1)
+        self.lead += 4 * some if crew.run(parts) else -some
+        self.lead = min(max(self.lead, self.count // (2 * self.threads)), self.count)
+
+    def _step(self, part: int, first: int, last: int) -> None:
         self.step_batch(self.arena, self.layout, self.physics, first, last, part)
         after_step(self.arena, self.places, self.keys, self.observations, first, last)
 
     def info(self) -> dict[str, Floats]:
-        """Return what an agent does not see, by name (arms,): the truth, the target, the reward's terms."""
-        truth = {name: self.looks[:, i - TRUTH] for i, name in enumerate(TRUTH_NAMES)}
-        terms = {f"reward_{name}": self.own[:, at.TERM + i] for i, name in enumerate(REWARD_TERMS)}
-        return truth | {"target": self.own[:, at.TARGET], "command": self.own[:, at.COMMAND]} | terms
+        """Return a copy of what an agent does not see, by name (arms,): the truth, the target, the reward's terms."""
+        own, looks = self.own.copy(), self.looks.copy()
+        columns = {name: looks[:, i - TRUTH] for i, name in enumerate(TRUTH_NAMES)}
+        columns |= {"target": own[:, at.TARGET], "command": own[:, at.COMMAND]}
+        return columns | {name: own[:, at.TERM + i] for i, name in enumerate(TERM_NAMES)}
 
     def arm_of(self, arm: int) -> Arm:
         """Return the arm as it was drawn for the present episode."""
@@ -249,10 +273,13 @@ def _sensors(setup: Setup) -> Floats:
     """Return the sensors' numbers (signals, SENSOR)."""
     table = np.zeros((len(setup.arm.sensors), at.SENSOR))
     scales = setup.scales()
-    for j, (signal, sensor) in enumerate(setup.arm.sensors.items()):
+    largest = setup.largest()
+    for j, sensor in enumerate(setup.arm.sensors.values()):
         late = sensor["delay"] * setup.rate
         whole = math.floor(late + 1e-9)
-        table[j] = (sensor["noise"], sensor["resolution"], LARGEST[signal], scales[j], whole, max(late - whole, 0.0))
+        step = sensor["resolution"]
+        per_step = 1.0 / step if step else 0.0
+        table[j] = (sensor["noise"], step, per_step, largest[j], 1.0 / scales[j], whole, max(late - whole, 0.0))
     return table
 
 

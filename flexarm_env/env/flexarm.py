@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
@@ -40,24 +40,33 @@ def make_setup(
     Raises:
         InputError: for an argument that does not make sense, in one line.
     """
-    known = arm if isinstance(arm, Arm) else Arm.load(arm)
-    drawn, variation = find_variation(known, randomise, vary)
+    if not isinstance(control_rate, int | float | np.number):
+        raise InputError(f"control_rate = {control_rate!r}; give a number [Hz]")
+    drawn, variation = find_variation(find_arm(arm), randomise, vary)
     return Setup(find_task(task), drawn, variation, find_disturbance(disturb), float(control_rate), bool(physical))
 
 
 def find_arm(arm: str | Path | Arm) -> Arm:
-    """Return an arm from its name, its file or itself."""
-    return arm if isinstance(arm, Arm) else Arm.load(arm)
+    """Return an arm from its name, its file or itself.
+
+    Raises:
+        InputError: for anything else.
+    """
+    if isinstance(arm, Arm):
+        return arm
+    if not isinstance(arm, str | Path):
+        raise InputError(f"arm = {arm!r}; give a name, the path of an arm file, or an Arm")
+    return Arm.load(arm)
 
 
-def refuse_unknown(unknown: Mapping[str, Any]) -> None:
-    """Refuse arguments that no environment has.
+def refuse_unknown(unknown: Mapping[str, Any], known: Sequence[str] = ARGUMENTS) -> None:
+    """Refuse arguments that an environment does not have.
 
     Raises:
         InputError: naming the first of them, and the nearest that exists.
     """
     for name in unknown:
-        raise InputError(f"unknown argument '{name}'{did_you_mean(name, ARGUMENTS)}")
+        raise InputError(f"unknown argument '{name}'{did_you_mean(name, known)}")
 
 
 def spaces_of(setup: Setup) -> tuple[spaces.Box[Any], spaces.Box[Any]]:
@@ -126,7 +135,7 @@ class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
             self.view.clear()
         if self.render_mode == "human":
             self.render()
-        return self.batch.observations[0].copy(), _info(self.batch.seen_of_first.tolist())
+        return self.batch.first_observation.copy(), _info(self.batch.seen_of_first.tolist())
 
     def step(self, action: NDArray[np.float32]) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Apply the command action · limit for one sample.
@@ -143,7 +152,7 @@ class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
         if self.render_mode == "human":
             self.render()
         seen = batch.seen_of_first.tolist()
-        return batch.observations[0].copy(), seen[REWARD], seen[TERMINATED] > 0.0, False, _info(seen)
+        return batch.first_observation.copy(), seen[REWARD], seen[TERMINATED] > 0.0, False, _info(seen)
 
     def state(self) -> NDArray[np.float64]:
         """Return the machine's state [q, q̇, extra], see Plant.physical: what no controller sees."""

@@ -29,8 +29,8 @@ TERM = 11
 COLUMNS = TERM + TERMS
 
 # --- columns of each sensor's numbers
-NOISE, STEP, LARGEST, SCALE, WHOLE_DELAY, SHARE_OF_DELAY = range(6)
-SENSOR = 6
+NOISE, STEP, PER_STEP, LARGEST, PER_SCALE, WHOLE_DELAY, SHARE_OF_DELAY = range(7)
+SENSOR = 7
 
 # --- places: where each quantity stands in the arms' common array
 (
@@ -41,6 +41,27 @@ SENSOR = 6
 NEAR = 0.05
 #: Streams of draws of one episode.
 SENSORS_STREAM, TAPS_STREAM, DROPS_STREAM = 1, 2, 3
+#: Distance of SplitMix64's counters: 2⁶⁴ over the golden ratio.
+GOLDEN = np.uint64(0x9E3779B97F4A7C15)
+
+#: Layers of equal area under the normal density: their number, the lowest one's edge, their area (Doornik 2005).
+LAYERS = 256
+LOWEST_EDGE = 3.6541528853610088
+LAYER_AREA = 0.00492867323399
+
+
+def _edges():
+    """Return the right edges (LAYERS + 1,) of the layers, from the lowest up."""
+    density = math.exp(-0.5 * LOWEST_EDGE**2)
+    edges = [LAYER_AREA / density, LOWEST_EDGE]
+    while len(edges) < LAYERS:
+        density += LAYER_AREA / edges[-1]
+        edges.append(math.sqrt(-2.0 * math.log(density)))
+    return np.array([*edges, 0.0])
+
+
+EDGES = _edges()
+RATIOS = EDGES[1:] / EDGES[:-1]
 
 
 @njit(cache=True)
@@ -54,19 +75,54 @@ def mixed(x):
 @njit(cache=True)
 def uniform(key, stream, counter):
     """Return a number in [0, 1) for a key, a stream and a place in it."""
-    golden = np.uint64(0x9E3779B97F4A7C15)
-    own = mixed(key + np.uint64(stream) * golden)
-    return float(mixed(own + (np.uint64(counter) + np.uint64(1)) * golden) >> np.uint64(11)) * 2.0**-53
+    own = mixed(key + np.uint64(stream) * GOLDEN)
+    return float(mixed(own + (np.uint64(counter) + np.uint64(1)) * GOLDEN) >> np.uint64(11)) * 2.0**-53
 
 
 @njit(cache=True)
 def key_of(seed, name, episode):
     """Return the key of an episode: of an arm's seed, the hash of a name and the episode's number."""
-    golden = np.uint64(0x9E3779B97F4A7C15)
-    return mixed(mixed(mixed(np.uint64(seed) + golden) + np.uint64(name)) + np.uint64(episode) * golden)
+    return mixed(mixed(mixed(np.uint64(seed) + GOLDEN) + np.uint64(name)) + np.uint64(episode) * GOLDEN)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, error_model="numpy")
+def normal(stream, counter):
+    """Return a normal number of variance 1 for a stream's own key and a place in it.
+
+    Source: Doornik, An Improved Ziggurat Method to Generate Normal Random Samples, 2005. Where a draw is refused, the
+    next one comes from the hash of its bits.
+    """
+    bits = mixed(stream + (np.uint64(counter) + np.uint64(1)) * GOLDEN)
+    while True:
+        layer = np.int64(bits & np.uint64(LAYERS - 1))
+        share = float(np.int64(bits) >> np.int64(11)) * 2.0**-52
+        drawn = share * EDGES[layer]
+        if abs(share) < RATIOS[layer]:
+            return drawn
+        bits = mixed(bits + GOLDEN)
+        height = float(bits >> np.uint64(11)) * 2.0**-53
+        if layer == 0:
+            return math.copysign(_beyond(bits, height), share)
+        upper = math.exp(-0.5 * (EDGES[layer] ** 2 - drawn**2))
+        lower = math.exp(-0.5 * (EDGES[layer + 1] ** 2 - drawn**2))
+        if lower + height * (upper - lower) < 1.0:
+            return drawn
+        bits = mixed(bits + GOLDEN)
+
+
+@njit(cache=True)
+def _beyond(bits, share):
+    """Return a number from the tail beyond the lowest layer (Marsaglia 1964)."""
+    while True:
+        bits = mixed(bits + GOLDEN)
+        further = -math.log(1.0 - share) / EDGES[1]
+        if -2.0 * math.log(1.0 - float(bits >> np.uint64(11)) * 2.0**-53) > further**2:
+            return EDGES[1] + further
+        bits = mixed(bits + GOLDEN)
+        share = float(bits >> np.uint64(11)) * 2.0**-53
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def after_step(arena, places, keys, observations, first, last):
     """Judge arms first to last - 1 after their physics, show them, and draw what disturbs their next sample.
 
@@ -78,108 +134,109 @@ def after_step(arena, places, keys, observations, first, last):
         first: of the arms.
         last: behind the last of them.
     """
-    settings = arena[places[AT_SETTINGS] : places[AT_SETTINGS] + SETTINGS]
     for arm in range(first, last):
-        own = arena[places[AT_OWN] + arm * COLUMNS : places[AT_OWN] + (arm + 1) * COLUMNS]
-        looks = arena[places[AT_LOOKS] + arm * places[LOOKS_EACH] : places[AT_LOOKS] + (arm + 1) * places[LOOKS_EACH]]
-        judge(settings, own, looks[places[SIGNALS] :], arena[places[AT_ASKED] + arm])
-        sense(settings, arena, places, own, keys[arm], looks, observations, arm)
-        arena[places[AT_PUSHES] + arm] = push(settings, own, keys[arm])
+        own = places[AT_OWN] + arm * COLUMNS
+        judge(arena, places, own, arm)
+        sense(arena, places, own, keys[arm], observations, arm)
+        arena[places[AT_PUSHES] + arm] = push(arena, places[AT_SETTINGS], own, keys[arm])
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def after_reset(arena, places, keys, observations, arm):
     """Show an arm at the start of an episode, and draw what disturbs its first sample."""
-    settings = arena[places[AT_SETTINGS] : places[AT_SETTINGS] + SETTINGS]
-    own = arena[places[AT_OWN] + arm * COLUMNS : places[AT_OWN] + (arm + 1) * COLUMNS]
-    looks = arena[places[AT_LOOKS] + arm * places[LOOKS_EACH] : places[AT_LOOKS] + (arm + 1) * places[LOOKS_EACH]]
-    sense(settings, arena, places, own, keys[arm], looks, observations, arm)
-    arena[places[AT_PUSHES] + arm] = push(settings, own, keys[arm])
+    own = places[AT_OWN] + arm * COLUMNS
+    sense(arena, places, own, keys[arm], observations, arm)
+    arena[places[AT_PUSHES] + arm] = push(arena, places[AT_SETTINGS], own, keys[arm])
 
 
-@njit(cache=True)
-def push(settings, own, key):
+@njit(cache=True, error_model="numpy")
+def push(a, settings, own, key):
     """Return what a tap on the hub adds to the command of the next sample; taps start at random."""
-    if own[TAP_LEFT] <= 0.0 and settings[TAP_CHANCE] > 0.0:
-        counter = 2 * int(own[SAMPLE])
-        if uniform(key, TAPS_STREAM, counter) < settings[TAP_CHANCE]:
-            own[TAP_LEFT] = settings[TAP_SAMPLES]
-            own[TAP] = settings[TAP_TORQUE] * (2.0 * uniform(key, TAPS_STREAM, counter + 1) - 1.0)
-    if own[TAP_LEFT] <= 0.0:
+    if a[own + TAP_LEFT] <= 0.0 and a[settings + TAP_CHANCE] > 0.0:
+        counter = 2 * int(a[own + SAMPLE])
+        if uniform(key, TAPS_STREAM, counter) < a[settings + TAP_CHANCE]:
+            a[own + TAP_LEFT] = a[settings + TAP_SAMPLES]
+            a[own + TAP] = a[settings + TAP_TORQUE] * (2.0 * uniform(key, TAPS_STREAM, counter + 1) - 1.0)
+    if a[own + TAP_LEFT] <= 0.0:
         return 0.0
-    own[TAP_LEFT] -= 1.0
-    return own[TAP] * settings[PER_TORQUE]
+    a[own + TAP_LEFT] -= 1.0
+    return a[own + TAP] * a[settings + PER_TORQUE]
 
 
-@njit(cache=True)
-def sense(settings, arena, places, own, key, looks, observations, arm):
+@njit(cache=True, error_model="numpy")
+def sense(a, places, own, key, observations, arm):
     """Write what the sensors of an arm show, over their scales, then the target, to observations (arms, signals + 1).
 
     A sensor is late by its delay, noisy, goes in steps and ends at its largest reading; one that has dropped out shows
     what it last showed.
     """
-    signals, depth, sample = places[SIGNALS], places[DEPTH], int(own[SAMPLE])
-    history = arena[places[AT_HISTORY] + arm * depth * signals :]
-    shown = arena[places[AT_SHOWN] + arm * signals :]
-    dropped = _dropped(settings, own, key, sample, signals)
-    radius, turn = 0.0, 0.0
+    settings, signals, sample = places[AT_SETTINGS], places[SIGNALS], int(a[own + SAMPLE])
+    looks, shown = places[AT_LOOKS] + arm * places[LOOKS_EACH], places[AT_SHOWN] + arm * signals
+    dropped = _dropped(a, settings, own, key, sample, signals) if a[settings + DROP_CHANCE] > 0.0 else -1
+    late = places[DEPTH] > 0
+    stream = mixed(key + np.uint64(SENSORS_STREAM) * GOLDEN)
     for j in range(signals):
-        sensor = arena[places[AT_SENSORS] + j * SENSOR : places[AT_SENSORS] + (j + 1) * SENSOR]
-        history[(sample % depth) * signals + j] = looks[j]
-        if j % 2 == 0:
-            counter = sample * (signals + signals % 2) + j
-            radius = math.sqrt(-2.0 * math.log(1.0 - uniform(key, SENSORS_STREAM, counter)))
-            turn = 2.0 * math.pi * uniform(key, SENSORS_STREAM, counter + 1)
-        draw = radius * (math.cos(turn) if j % 2 == 0 else math.sin(turn))
-        late = sample - int(sensor[WHOLE_DELAY])
-        quantity = history[(max(late, 0) % depth) * signals + j]
-        if sensor[SHARE_OF_DELAY] > 0.0:
-            quantity += sensor[SHARE_OF_DELAY] * (history[(max(late - 1, 0) % depth) * signals + j] - quantity)
-        reading = quantity + sensor[NOISE] * draw
-        if sensor[STEP] > 0.0:
-            reading = np.rint(reading / sensor[STEP]) * sensor[STEP] + 0.0
+        sensor = places[AT_SENSORS] + j * SENSOR
+        quantity = _late(a, places, sensor, sample, arm, j) if late else a[looks + j]
+        reading = quantity + a[sensor + NOISE] * normal(stream, sample * signals + j)
+        if a[sensor + STEP] > 0.0:
+            reading = np.rint(reading * a[sensor + PER_STEP]) * a[sensor + STEP] + 0.0
         if not math.isfinite(reading) or j == dropped:
-            reading = shown[j]
-        reading = min(max(reading, -sensor[LARGEST]), sensor[LARGEST])
-        shown[j] = reading
-        observations[arm, j] = reading / sensor[SCALE]
-    observations[arm, signals] = own[TARGET] / settings[TARGET_SCALE]
+            reading = a[shown + j]
+        reading = min(max(reading, -a[sensor + LARGEST]), a[sensor + LARGEST])
+        a[shown + j] = reading
+        observations[arm, j] = reading * a[sensor + PER_SCALE]
+    observations[arm, signals] = a[own + TARGET] / a[settings + TARGET_SCALE]
 
 
-@njit(cache=True)
-def _dropped(settings, own, key, sample, signals):
+@njit(cache=True, error_model="numpy")
+def _late(a, places, sensor, sample, arm, j):
+    """Return what sensor j of an arm measured some samples ago, and keep what it measures now."""
+    signals, depth = places[SIGNALS], places[DEPTH]
+    history = places[AT_HISTORY] + arm * depth * signals + j
+    a[history + (sample % depth) * signals] = a[places[AT_LOOKS] + arm * places[LOOKS_EACH] + j]
+    late = sample - int(a[sensor + WHOLE_DELAY])
+    quantity, before = a[history + (max(late, 0) % depth) * signals], a[history + (max(late - 1, 0) % depth) * signals]
+    return quantity + a[sensor + SHARE_OF_DELAY] * (before - quantity)
+
+
+@njit(cache=True, error_model="numpy")
+def _dropped(a, settings, own, key, sample, signals):
     """Return which sensor of an arm has dropped out, or -1."""
-    may = own[DROP_LEFT] <= 0.0 and settings[DROP_CHANCE] > 0.0 and sample > 0
-    if may and uniform(key, DROPS_STREAM, 2 * sample) < settings[DROP_CHANCE]:
-        own[DROP_LEFT] = settings[DROP_SAMPLES]
-        own[DROPPED] = math.floor(signals * uniform(key, DROPS_STREAM, 2 * sample + 1))
-    if own[DROP_LEFT] <= 0.0:
+    may = a[own + DROP_LEFT] <= 0.0 and sample > 0
+    if may and uniform(key, DROPS_STREAM, 2 * sample) < a[settings + DROP_CHANCE]:
+        a[own + DROP_LEFT] = a[settings + DROP_SAMPLES]
+        a[own + DROPPED] = math.floor(signals * uniform(key, DROPS_STREAM, 2 * sample + 1))
+    if a[own + DROP_LEFT] <= 0.0:
         return -1
-    own[DROP_LEFT] -= 1.0
-    return int(own[DROPPED])
+    a[own + DROP_LEFT] -= 1.0
+    return int(a[own + DROPPED])
 
 
-@njit(cache=True)
-def judge(settings, own, truth, command):
+@njit(cache=True, error_model="numpy")
+def judge(a, places, own, arm):
     """Move the target on and write the reward, its terms and whether the episode ends into the arm's own numbers."""
-    own[SAMPLE] += 1.0
-    change, own[COMMAND] = command - own[COMMAND], command
-    if settings[HALF_PERIOD] > 0.0:
-        half = math.floor(own[SAMPLE] * settings[INTERVAL] / settings[HALF_PERIOD] + 1e-9)
-        own[TARGET] = own[FIRST_TARGET] * (1.0 if half % 2 == 0 else -1.0)
-    angle, tip, lost = truth[0], truth[2], truth[4] > 0.0
-    failed = lost or not abs(angle - own[FIRST_ANGLE]) <= settings[RANGE]
+    settings, command = places[AT_SETTINGS], a[places[AT_ASKED] + arm]
+    truth = places[AT_LOOKS] + arm * places[LOOKS_EACH] + places[SIGNALS]
+    a[own + SAMPLE] += 1.0
+    change, a[own + COMMAND] = command - a[own + COMMAND], command
+    if a[settings + HALF_PERIOD] > 0.0:
+        half = math.floor(a[own + SAMPLE] * a[settings + INTERVAL] / a[settings + HALF_PERIOD] + 1e-9)
+        a[own + TARGET] = a[own + FIRST_TARGET] * (1.0 if half % 2 == 0 else -1.0)
+    angle, tip, lost = a[truth], a[truth + 2], a[truth + 4] > 0.0
+    failed = lost or not abs(angle - a[own + FIRST_ANGLE]) <= a[settings + RANGE]
     if lost:
-        angle, tip = own[FIRST_ANGLE] + settings[RANGE], 0.0
-    distance = abs(own[TARGET] - angle)
-    own[TERM] = -distance
-    own[TERM + 1] = math.exp(-distance / NEAR)
-    own[TERM + 2] = -abs(tip) / settings[LENGTH]
-    own[TERM + 3] = -((command / settings[LIMIT]) ** 2)
-    own[TERM + 4] = -((change / settings[LIMIT]) ** 2)
-    own[TERM + 5] = -1.0 if failed else 0.0
-    own[REWARD] = 0.0
+        angle, tip = a[own + FIRST_ANGLE] + a[settings + RANGE], 0.0
+    distance = abs(a[own + TARGET] - angle)
+    a[own + TERM] = -distance
+    a[own + TERM + 1] = math.exp(-distance / NEAR)
+    a[own + TERM + 2] = -abs(tip) / a[settings + LENGTH]
+    a[own + TERM + 3] = -((command / a[settings + LIMIT]) ** 2)
+    a[own + TERM + 4] = -((change / a[settings + LIMIT]) ** 2)
+    a[own + TERM + 5] = -1.0 if failed else 0.0
+    reward = 0.0
     for i in range(TERMS):
-        own[TERM + i] *= settings[WEIGHTS + i]
-        own[REWARD] += own[TERM + i]
-    own[TERMINATED] = 1.0 if failed else 0.0
+        a[own + TERM + i] *= a[settings + WEIGHTS + i]
+        reward += a[own + TERM + i]
+    a[own + REWARD] = reward
+    a[own + TERMINATED] = 1.0 if failed else 0.0

@@ -2,11 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from flexarm_env.arm import Arm
 from flexarm_env.env.flexarm import FlexArmEnv
+from flexarm_env.errors import InputError
+
+
+def refuse_task(own: str, arguments: Mapping[str, Any]) -> None:
+    """Refuse another task than a page's own.
+
+    Raises:
+        InputError: naming both.
+    """
+    if "task" in arguments:
+        raise InputError(f"task = {arguments['task']!r}: this environment's task is '{own}'; use FlexArmEnv for another")
 
 
 class SlewEnv(FlexArmEnv):
@@ -87,6 +99,7 @@ class SlewEnv(FlexArmEnv):
     """
 
     def __init__(self, arm: str | Path | Arm = "thesis", **arguments: Any) -> None:
+        refuse_task("slew", arguments)
         super().__init__("slew", arm, **arguments)
 
 
@@ -166,6 +179,7 @@ class TrackEnv(FlexArmEnv):
     """
 
     def __init__(self, arm: str | Path | Arm = "thesis", **arguments: Any) -> None:
+        refuse_task("track", arguments)
         super().__init__("track", arm, **arguments)
 
 
@@ -245,4 +259,5 @@ class DampEnv(FlexArmEnv):
     """
 
     def __init__(self, arm: str | Path | Arm = "thesis", **arguments: Any) -> None:
+        refuse_task("damp", arguments)
         super().__init__("damp", arm, **arguments)

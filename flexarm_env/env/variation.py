@@ -16,6 +16,7 @@ Range = Sequence[float]
 LEAST_SHARE = 1e-9
 #: Settings of a sensor that the plant works in; noise, steps and delay are the same for all arms of an environment.
 IN_THE_PLANT = ("gain", "offset", "filter", "position")
+EXAMPLES = {"randomise": '{"payload.mass": (0.0, 0.3)}', "vary": '{"hub.inertia": 0.1}', "disturb": '{"tap_rate": 1.0}'}
 
 
 @dataclass(frozen=True)
@@ -38,8 +39,8 @@ class Disturbance:
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
-            if not (math.isfinite(value) and value >= 0.0):
-                raise InputError(f"disturb: {name} = {value:g}; give a number from 0 up")
+            if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0.0):
+                raise InputError(f"disturb: {name} = {value!r}; give a number from 0 up")
 
 
 def find_disturbance(given: Disturbance | Mapping[str, float] | None) -> Disturbance:
@@ -50,6 +51,8 @@ def find_disturbance(given: Disturbance | Mapping[str, float] | None) -> Disturb
     """
     if isinstance(given, Disturbance):
         return given
+    if not isinstance(given, Mapping | None):
+        raise InputError(f"disturb = {given!r}; give a table such as {EXAMPLES['disturb']}")
     for name in given or {}:
         if name not in Disturbance.__dataclass_fields__:
             raise InputError(f"disturb: unknown setting '{name}'{did_you_mean(name, Disturbance.__dataclass_fields__)}")
@@ -80,12 +83,15 @@ def find_variation(arm: Arm, randomise: Mapping[str, Range] | None, vary: Mappin
         InputError: for a path that does not exist, or a range that is none or out of bounds.
     """
     ranges = []
+    for name, table in (("randomise", randomise), ("vary", vary)):
+        if not isinstance(table, Mapping | None):
+            raise InputError(f"{name} = {table!r}; give a table such as {EXAMPLES[name]}")
     for path, given in (randomise or {}).items():
         low, high = _pair(path, given)
         arm, place = _place(arm, path)
         ranges.append((place, *_bounded(arm, place, low, high)))
     for path, share in (vary or {}).items():
-        if not 0.0 <= float(share) < 1.0:
+        if not (isinstance(share, int | float) and 0.0 <= share < 1.0):
             raise InputError(f"vary: {path} = {share}; give a share from 0 to less than 1, as 0.1 for ±10 %")
         arm, place = _place(arm, path)
         ends = sorted((arm.value(place) * (1.0 - share), arm.value(place) * (1.0 + share)))

@@ -117,7 +117,8 @@ class _Search:
             if self.best.windows < PERFECT:
                 break
         self._drop_useless()
-        if OFFSET in self.accepted and self.equivalent[self.accepted.index(OFFSET)] == [OFFSET]:
+        # Where much is missing still, no rival of an offset can be told from another.
+        if OFFSET in self.accepted and self.equivalent[self.accepted.index(OFFSET)] == [OFFSET] and self.best.windows <= FAR_OFF:
             self._swap_offset()
 
     def _add_one(self, done: float, share: float) -> bool:
@@ -270,7 +271,7 @@ class _Search:
         level = measure(self.best) + SAME_GAIN * (measure(self.first) - measure(self.best))
         best = min(found, key=lambda h: measure(h.score), default=None)
         same = [h.effects[0] for h in found if measure(h.score) <= level]
-        if best is None or measure(best.score) >= measure(self.best):
+        if best is None or measure(best.score) >= (1.0 - LEAST_GAIN) * measure(self.best):
             self.equivalent[place] += same
             return
         name, before = best.effects[0], self.best

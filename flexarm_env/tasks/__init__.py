@@ -21,6 +21,6 @@ def find_task(task: str | Task) -> Task:
     """
     if isinstance(task, Task):
         return task
-    if task not in TASKS:
+    if not isinstance(task, str) or task not in TASKS:
         raise InputError(f"unknown task '{task}'{did_you_mean(str(task), TASKS)}")
     return TASKS[task]
