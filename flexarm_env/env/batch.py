@@ -181,13 +181,10 @@ class Batch:
 
     def _start(self, arm: int) -> None:
         setup, own = self.setup, self.own[arm]
-        episode = int(self.episodes[arm])
-        self.keys[arm] = np.uint64(at.key_of(self.seeds[arm], hash_of("sensors"), episode))
+        self.keys[arm] = self._key(arm, "sensors")
         plant = self.plant
         if setup.variation.ranges:
-            key = np.uint64(at.key_of(self.seeds[arm], hash_of("arm"), episode))
-            draws = [at.uniform(key, 0, i) for i in range(len(setup.variation.ranges))]
-            plant = setup.variation.arm(setup.arm, draws).plant(1.0 / setup.rate)
+            plant = self.arm_of(arm).plant(1.0 / setup.rate)
             self.constants[arm] = plant.constants
         if setup.variation.ranges or self.first_state is None:
             self.first_state = self._run_up(plant)
@@ -250,9 +247,13 @@ class Batch:
 
     def arm_of(self, arm: int) -> Arm:
         """Return the arm as it was drawn for the present episode."""
-        key = np.uint64(at.key_of(self.seeds[arm], hash_of("arm"), int(self.episodes[arm])))
+        key = self._key(arm, "arm")
         draws = [at.uniform(key, 0, i) for i in range(len(self.setup.variation.ranges))]
         return self.setup.variation.arm(self.setup.arm, draws)
+
+    def _key(self, arm: int, name: str) -> np.uint64:
+        """Return the key of an arm's draws of a name in its present episode."""
+        return np.uint64(at.key_of(self.seeds[arm], hash_of(name), int(self.episodes[arm])))
 
 
 def _check_layouts(setup: Setup, plant: Plant) -> None:
