@@ -26,11 +26,10 @@ TRUTH = 5
 
 # --- places: where each quantity of a batch stands in its array, and how far one arm's is from the next
 AT_CONSTANTS, CONSTANTS_EACH, AT_STATES, STATE_EACH, AT_COMMANDS, AT_PUSHES, AT_LOOKS, AT_SCRATCH, SCRATCH_EACH = range(9)
-PLACES = 9
 
 
 @njit
-def look(d: Numbers, n: Places, s: Numbers, out: Numbers, at: int) -> None:
+def write_truth(d: Numbers, n: Places, s: Numbers, out: Numbers, at: int) -> None:
     """Write hub angle [rad], hub speed [rad/s], tip deflection [m] and whether the hub sticks, to out from `at` on."""
     mode = int(s[MODE])
     size, count = 2 * n[BLOCKS], n[COORDINATES]
@@ -50,7 +49,7 @@ def look_batch(arena: Numbers, n: Places, places: Places, first: int, last: int)
         constants = arena[places[AT_CONSTANTS] + arm * places[CONSTANTS_EACH] :]
         state = arena[places[AT_STATES] + arm * places[STATE_EACH] :]
         measure(constants, n, state, arena, places[AT_LOOKS] + arm * (n[SIGNALS] + TRUTH))
-        look(constants, n, state, arena, places[AT_LOOKS] + arm * (n[SIGNALS] + TRUTH) + n[SIGNALS])
+        write_truth(constants, n, state, arena, places[AT_LOOKS] + arm * (n[SIGNALS] + TRUTH) + n[SIGNALS])
 
 
 @njit

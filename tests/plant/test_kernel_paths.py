@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +12,9 @@ import numpy as np
 import pytest
 from plant_arms import FRICTION, law, noise, pulse, relative, thesis_plant
 
+from flexarm_env.effects import catalogue
 from flexarm_env.plant import layout as at
+from flexarm_env.plant.compose import source_of
 from flexarm_env.plant.propagate import block_response
 
 ARMS = {
@@ -132,3 +135,9 @@ def test_jitted_kernel_equals_python(tmp_path):
     subprocess.run([sys.executable, "-c", SCRIPT, str(tmp_path / "python.npy")], env=environment, check=True)
     jitted = np.vstack([thesis_plant(**ARMS[n]).replay(noise(5, 40)) for n in ("base", "stribeck", "backlash")])
     assert relative(jitted, np.load(tmp_path / "python.npy")) < 1e-12
+
+
+def test_no_two_kernels_share_a_name():
+    text = source_of(catalogue().laws)
+    names = re.findall(r"^def (\w+)", text, re.MULTILINE)
+    assert len(names) == len(set(names))  # one module holds them all: a second would shadow the first in Python
