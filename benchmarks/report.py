@@ -6,8 +6,6 @@ import datetime
 import json
 import os
 import platform
-import subprocess
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +15,8 @@ from rich.console import Console
 from rich.table import Table
 
 import flexarm_env
+from flexarm_env.cli.outputs import commit
+from flexarm_env.files import write_whole
 
 
 @dataclass(frozen=True)
@@ -143,22 +143,7 @@ def write(path: Path, found: Mapping[str, Any], seconds: float) -> None:
         "goals": goals,
     }
     path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile("w", dir=path.parent, suffix=".tmp", delete=False, encoding="utf-8") as file:
-        json.dump(content, file, indent=2, ensure_ascii=False)
-        file.write("\n")
-    os.replace(file.name, path)
-
-
-def commit() -> str:
-    """Commit of the source tree, with + where it has changes; "" outside of one."""
-    root = Path(__file__).resolve().parent.parent
-    try:
-        git = ["git", "-C", str(root)]
-        done = subprocess.run([*git, "rev-parse", "HEAD"], capture_output=True, text=True, check=True)
-        changed = subprocess.run([*git, "status", "--porcelain"], capture_output=True, text=True, check=True)
-    except (OSError, subprocess.CalledProcessError):
-        return ""
-    return done.stdout.strip() + ("+" if changed.stdout.strip() else "")
+    write_whole(path, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
 
 
 def machine() -> dict[str, Any]:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
-import tempfile
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,6 +11,7 @@ from typing import Any
 from flexarm_env.arm import Arm, check_bounds
 from flexarm_env.effects import Catalogue
 from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.files import write_whole
 from flexarm_env.parameters import DEFAULTS, SECTIONS, SENSOR, Parameter, sensor_unit
 from flexarm_env.signals import INPUTS, SIGNALS
 from flexarm_env.units import quantity
@@ -179,13 +178,7 @@ def write_arm(arm: Arm, path: Path) -> None:
     Raises:
         InputError: if the place cannot be written.
     """
-    text = arm_text(arm)
-    try:
-        with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False, encoding="utf-8") as file:
-            file.write(text)
-        os.replace(file.name, path)
-    except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror}; name a folder that exists and can be written") from None
+    write_whole(path, arm_text(arm))
 
 
 def arm_text(arm: Arm) -> str:

@@ -8,13 +8,13 @@ import math
 import os
 import subprocess
 import sys
-import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import flexarm_env
 from flexarm_env.errors import InputError
+from flexarm_env.files import write_whole
 from flexarm_env.identify.recording import Recording
 
 STDOUT = Path("-")
@@ -42,28 +42,6 @@ def need_plots() -> None:
     missing = [name for name in ("plotly", "matplotlib") if importlib.util.find_spec(name) is None]
     if missing:
         raise InputError(f"pictures need {' and '.join(missing)}; pip install 'flexarm-env[plots]'")
-
-
-def write_whole(path: Path, text: str) -> None:
-    """Write a text file, whole or not at all.
-
-    Raises:
-        InputError: if the place cannot be written.
-    """
-    draft = None
-    try:
-        with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False, encoding="utf-8", newline="\n") as file:
-            draft = file.name
-            file.write(text)
-        # A temporary file is for its owner only; this one is to be like any other.
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(draft, 0o666 & ~mask)
-        os.replace(draft, path)
-    except OSError as error:
-        if draft is not None:
-            Path(draft).unlink(missing_ok=True)
-        raise InputError(f"cannot write {path}: {error.strerror}; name a folder that exists and can be written") from None
 
 
 def write_json(path: Path | None, content: Mapping[str, Any]) -> None:

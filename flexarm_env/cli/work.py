@@ -17,6 +17,7 @@ from flexarm_env.cli import outputs, tables
 from flexarm_env.cli.progress import progress
 from flexarm_env.effects.catalogue import load_effect
 from flexarm_env.errors import InputError
+from flexarm_env.files import write_whole
 from flexarm_env.identify.recording import Recording
 from flexarm_env.pictures import words
 
@@ -109,7 +110,7 @@ def report(path: Path, before: Comparison, after: Comparison | None, diagnosis: 
     """Write the page, whole or not at all."""
     from flexarm_env.pictures.page import page
 
-    outputs.write_whole(path, page(before, after, diagnosis))
+    write_whole(path, page(before, after, diagnosis))
 
 
 def simulate(

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.files import write_whole
 from flexarm_env.identify.columns import (
     UNITS,
     ColumnMap,
@@ -22,12 +23,12 @@ from flexarm_env.identify.columns import (
     load_columns,
     si_factor,
 )
+from flexarm_env.identify.matlab import read_matlab
 from flexarm_env.identify.readers import (
     CONDITIONS,
     Table,
     fault,
     read_bytes,
-    read_matlab,
     read_text_table,
 )
 from flexarm_env.signals import INPUTS, SIGNALS
@@ -197,7 +198,7 @@ class Recording:
         remarks = [f"# {name} = {value!r} {CONDITIONS.get(name, '')}".rstrip() for name, value in self.conditions.items()]
         header = ",".join(f"{name} [{UNITS[name]}]" for name in columns)
         rows = zip(*(map(repr, values.tolist()) for values in columns.values()), strict=True)
-        _write_whole(Path(path), "\n".join([*remarks, header, *map(",".join, rows), ""]))
+        write_whole(Path(path), "\n".join([*remarks, header, *map(",".join, rows), ""]))
 
     def part(self, start: float = 0.0, stop: float | None = None) -> Recording:
         """Return the samples with start <= time < stop [s]; without `stop`, up to the end.
@@ -346,19 +347,3 @@ def _distinct(recordings: list[Recording]) -> list[Recording]:
 
 def _is_csv(path: Path) -> bool:
     return path.suffix.lower() == ".csv" and not path.name.startswith(".") and not path.is_dir()
-
-
-def _write_whole(path: Path, text: str) -> None:
-    """Write a file beside its place, then move it there."""
-    draft = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        try:
-            with draft.open("x", encoding="utf-8", newline="\n") as file:
-                file.write(text)
-                file.flush()
-                os.fsync(file.fileno())
-            os.replace(draft, path)
-        finally:
-            draft.unlink(missing_ok=True)
-    except OSError as error:
-        raise fault(path, f"cannot be written: {error.strerror}; check folder and disk") from None

@@ -17,7 +17,6 @@ import inspect
 import logging
 import os
 import sys
-import tempfile
 import textwrap
 from collections.abc import Callable, Sequence
 from functools import lru_cache
@@ -26,6 +25,8 @@ from types import ModuleType
 from typing import Any
 
 import numba
+
+from flexarm_env.files import write_whole
 
 #: Ports that are laws in the kernel: the arguments that each may name, and what its switch returns by default.
 PORTS: dict[str, tuple[tuple[str, ...], str]] = {
@@ -198,7 +199,8 @@ def _module(text: str) -> ModuleType:
     name = f"flexarm_kernel_{stamp}"
     path = cache_folder() / f"{name}.py"
     if not path.exists():
-        _write_whole(path, ast.unparse(_Compiled().visit(ast.parse(text))))
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(path, ast.unparse(_Compiled().visit(ast.parse(text))))
     if not any((path.parent / "__pycache__").glob(f"{name}*.nbi")):
         logging.getLogger(__name__).warning("Compiling the plant, once for these effects: about 30 s")
     spec = importlib.util.spec_from_file_location(name, path)
@@ -208,10 +210,3 @@ def _module(text: str) -> ModuleType:
     sys.modules[name] = module
     spec.loader.exec_module(module)
     return module
-
-
-def _write_whole(path: Path, text: str) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile("w", dir=path.parent, suffix=".tmp", delete=False, encoding="utf-8") as file:
-        file.write(text)
-    os.replace(file.name, path)

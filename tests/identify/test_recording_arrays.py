@@ -124,7 +124,7 @@ def test_writing_is_whole_or_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 def test_writing_where_one_cannot(tmp_path: Path) -> None:
     for path in (tmp_path / "none" / "run.csv", tmp_path):
-        with pytest.raises(InputError, match="cannot be written"):
+        with pytest.raises(InputError, match="cannot write"):
             example().write(path)
     assert os.listdir(tmp_path) == []
 

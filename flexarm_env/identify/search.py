@@ -1,0 +1,274 @@
+"""Search for the effects that a model lacks: add the best, refit, and again, until nothing is left or nothing helps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from joblib import Parallel, delayed
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.data import Data
+from flexarm_env.identify.problem import Score, score
+from flexarm_env.identify.refit import Progress, Refit, as_it_is, polish, refit
+from flexarm_env.identify.screen import (
+    CANDIDATE_LEVELS,
+    Base,
+    Trial,
+    attempt,
+    best_trials,
+    candidates,
+    screening_base,
+    signatures,
+)
+
+#: How many candidates are refitted in full in each round, and how many if those leave the model far off.
+FINALISTS, MOST_FINALISTS = 4, 12
+#: And only those that lower the cost of the screening to this share.
+LEAST_CHANGE = 0.97
+#: A held-out error below this leaves nothing to explain.
+PERFECT = 1.1
+#: Least share of the excess error that an effect must remove to be accepted, and all accepted ones together.
+LEAST_GAIN, LEAST_TOTAL_GAIN = 0.25, 0.5
+#: Held-out error in windows above which models are judged by their free replays.
+FAR_OFF = 3.0
+OFFSET = "constant_torque"
+MOST_EFFECTS = 3
+#: Two effects are equivalent if the error they leave differs by less than this share of what they remove.
+SAME_GAIN = 0.03
+#: A refit of the constants that leaves less than the first share of the excess error is trusted as a start; one that
+#: leaves more than the second is not.
+REFIT_HELPS, REFIT_FAILS = 0.2, 0.7
+
+
+def excess(value: float) -> float:
+    """Return the excess of an error over the noise, as a variance."""
+    return max(value**2 - 1.0, 1e-9)
+
+
+@dataclass
+class Hypothesis:
+    """Effects tried together, the arm refitted with them, and its errors on the held-out part."""
+
+    effects: tuple[str, ...]
+    refit: Refit
+    score: Score
+
+
+class Search:
+    """Forward search: add the best effect, refit, and again, until nothing is left or nothing helps."""
+
+    def __init__(self, nominal: Arm, data: Data, jobs: int, say: Progress) -> None:
+        self.nominal, self.data, self.jobs, self.say = nominal, data, jobs, say
+        self.accepted: list[str] = []
+        self.equivalent: list[list[str]] = []
+        self.steps: dict[str, Score] = {}
+        self.ranking: dict[str, tuple[float, Refit | None]] = {}
+
+    def run(self, base: Refit, before: Score, first: Score) -> None:
+        """Search from the refitted constants, given the errors before and after the refit."""
+        self.base, self.before, self.first = base, before, first
+        self.found, self.best = base, first
+        done = 0.1
+        while len(self.accepted) < MOST_EFFECTS and self._add_one(done, 0.3):
+            done = min(done + 0.3, 0.7)
+            if self.best.windows < PERFECT:
+                break
+        self._drop_useless()
+        # Where much is missing still, no rival of an offset can be told from another.
+        if OFFSET in self.accepted and self.equivalent[self.accepted.index(OFFSET)] == [OFFSET] and self.best.windows <= FAR_OFF:
+            self._swap_offset()
+
+    def _add_one(self, done: float, share: float) -> bool:
+        worth = self.best.windows >= PERFECT
+        trials = self._screen(done, 0.6 * share)
+        if not self.ranking:
+            self._rank_screened(trials)
+        if not worth:
+            return False
+        control = next(t for t in trials if not t.effect)
+        better = [t for t in trials if t.effect and t.cost < LEAST_CHANGE * control.cost]
+        found: list[Hypothesis] = []
+        for first in range(0, MOST_FINALISTS, FINALISTS):
+            batch = better[first : first + FINALISTS]
+            if batch:
+                names, arms = [(t.effect,) for t in batch], [t.arm for t in batch]
+                found += self._refit_all(names, arms, done + 0.6 * share, 0.2 * share, thorough=first > 0)
+            if not batch or min(h.score.windows for h in found) < FAR_OFF:
+                break
+        if found and min(h.score.windows for h in found) >= PERFECT:
+            found += self._with_offset(found, done + 0.8 * share, 0.2 * share)
+        if self.accepted:
+            self._go_on()
+        if not found:
+            return False
+        measure = measure_of([h.score for h in found])
+        found.sort(key=lambda h: measure(h.score))
+        for hypothesis in reversed(found):
+            gain = 1.0 - measure(hypothesis.score) / measure(self.best)
+            if len(hypothesis.effects) == 1:
+                self._remember(hypothesis.effects[0], gain, hypothesis.refit)
+        possible = [h for h in found if not _at_bound(h)]
+        return bool(possible) and self._accept(possible)
+
+    def _accept(self, found: list[Hypothesis]) -> bool:
+        """Take the best hypothesis if it removes enough; the simplest of those that remove nearly as much."""
+        measure = measure_of([h.score for h in found])
+        now = measure(self.best)
+        singles = [h for h in found if len(h.effects) == 1]
+        winner = found[0]
+        if len(winner.effects) > 1 and singles and measure(singles[0].score) <= (1.0 + LEAST_GAIN) * measure(winner.score):
+            winner = singles[0]
+        removed = now - measure(winner.score)
+        if removed < LEAST_GAIN * now or (self.accepted and self._stays_lost(winner.score)):
+            return False
+        level = measure(winner.score) + SAME_GAIN * removed
+        rivals = [h for h in found if len(h.effects) == len(winner.effects)]
+        same = [h.effects[0] for h in rivals if h is winner or measure(h.score) <= level]
+        refitted = polish(winner.refit, self.nominal, self.data)
+        value = score(refitted.arm, self.data)
+        for effect in winner.effects:
+            self.accepted.append(effect)
+            self.equivalent.append(same if effect == winner.effects[0] else [effect])
+            self.steps[effect] = value
+        self.found, self.best = refitted, value
+        return True
+
+    def _stays_lost(self, found: Score) -> bool:
+        """Whether one more effect leaves the model far off without halving its error both in windows and freely replayed.
+
+        What is missing then is something else, which a flexible enough effect imitates where it was fitted.
+        """
+        pairs = ((found.windows, self.best.windows), (found.free_run, self.best.free_run))
+        return found.windows > FAR_OFF and any(excess(new) > (1.0 - LEAST_TOTAL_GAIN) * excess(old) for new, old in pairs)
+
+    def _with_offset(self, found: list[Hypothesis], done: float, share: float) -> list[Hypothesis]:
+        """Return the hypotheses with a constant torque beside each: alone it hides what friction explains, and it them."""
+        if OFFSET in self.found.arm.effects:
+            return []
+        pairs = [h for h in found if h.effects != (OFFSET,)]
+        arms = [h.refit.arm.with_effect(OFFSET, torque=0.0) for h in pairs]
+        far = min(h.score.windows for h in found) > FAR_OFF
+        return self._refit_all([(*h.effects, OFFSET) for h in pairs], arms, done, share, thorough=far)
+
+    def _go_on(self) -> None:
+        """Refit once more without anything new: what that gains is no merit of another effect."""
+        found = refit(self.found.arm, self.nominal, self.data, CANDIDATE_LEVELS)
+        value = score(found.arm, self.data)
+        if value.windows < self.best.windows:
+            self.found, self.best = found, value
+            self.steps[self.accepted[-1]] = value
+
+    def _remember(self, effect: str, gain: float, found: Refit | None) -> None:
+        if effect not in self.accepted:
+            self.ranking[effect] = (float(np.clip(gain, 0.0, 1.0)), found)
+
+    def _rank_screened(self, trials: list[Trial]) -> None:
+        reference = next(t for t in trials if not t.effect)
+        for trial in trials:
+            if trial.effect:
+                gain = 1.0 - trial.held_out / reference.held_out
+                self.ranking[trial.effect] = (float(np.clip(gain, 0.0, 1.0)), None)
+
+    def _screen(self, done: float, share: float) -> list[Trial]:
+        bases = [screening_base(start, self.data) for start in self._starts()]
+        names = candidates(self.found.arm)
+        tasks = [delayed(_try_effect)(base, name) for name in names for base in bases]
+        trials = [attempt(bases[0], None)]
+        for i, found in enumerate(self._parallel(tasks)):
+            trials += found
+            self.say(done + share * (i + 1) / len(tasks), f"trying {len(names)} effects")
+        return best_trials(trials)
+
+    def _starts(self) -> list[Refit]:
+        """Constants from which candidates are tried: the refitted ones, and the nominal ones where the refit did little.
+
+        A refit that cannot explain the data bends the constants out of shape, and an effect tried from there fails.
+        """
+        helped = excess(self.first.windows) / excess(self.before.windows)
+        if self.accepted or helped < REFIT_HELPS:
+            return [self.found]
+        unmoved = as_it_is(self.nominal, self.data)
+        return [unmoved] if helped > REFIT_FAILS else [self.found, unmoved]
+
+    def _refit_all(
+        self, effects: Sequence[tuple[str, ...]], arms: Sequence[Arm], done: float, share: float, thorough: bool
+    ) -> list[Hypothesis]:
+        pairs = zip(effects, arms, strict=True)
+        tasks = [delayed(_refit_arm)(e, arm, self.nominal, self.data, thorough) for e, arm in pairs]
+        out = []
+        for i, hypothesis in enumerate(self._parallel(tasks)):
+            out.append(hypothesis)
+            self.say(done + share * (i + 1) / len(tasks), f"refitting with {' and '.join(hypothesis.effects)}")
+        return out
+
+    def _parallel(self, tasks):  # type: ignore[no-untyped-def]
+        return Parallel(n_jobs=self.jobs, return_as="generator")(tasks)
+
+    def _drop_useless(self) -> None:
+        """Take out an effect that the later ones have made needless."""
+        for effect in list(self.accepted) if len(self.accepted) > 1 else []:
+            without = refit(self.found.arm.without_effect(effect), self.nominal, self.data, CANDIDATE_LEVELS)
+            value = score(without.arm, self.data)
+            measure = measure_of([value, self.best])
+            if measure(value) - measure(self.best) < LEAST_GAIN * measure(value):
+                self.found, self.best = without, value
+                place = self.accepted.index(effect)
+                del self.accepted[place], self.equivalent[place], self.steps[effect]
+
+    def _swap_offset(self) -> None:
+        """Put what a constant torque is confused with in its place, which came in beside another effect, untried."""
+        place = self.accepted.index(OFFSET)
+        without = self.found.arm.without_effect(OFFSET)
+        lacking = candidates(without)
+        rivals = [(name,) for name in without.known[OFFSET].confused_with if name in lacking]
+        arms = [without.with_effect(name) for (name,) in rivals]
+        found = self._refit_all(rivals, arms, 0.9, 0.05, thorough=False)
+        found = [h for h in found if not _at_bound(h)]
+        measure = measure_of([self.best, *(h.score for h in found)])
+        level = measure(self.best) + SAME_GAIN * (measure(self.first) - measure(self.best))
+        best = min(found, key=lambda h: measure(h.score), default=None)
+        same = [h.effects[0] for h in found if measure(h.score) <= level]
+        if best is None or measure(best.score) >= (1.0 - LEAST_GAIN) * measure(self.best):
+            self.equivalent[place] += same
+            return
+        name = best.effects[0]
+        near = measure(best.score) + SAME_GAIN * (measure(self.first) - measure(best.score))
+        also = [OFFSET] if measure(self.best) <= near else []
+        self.found, self.best, self.accepted[place] = best.refit, best.score, name
+        self.equivalent[place] = [name, *also, *(other for other in same if other != name)]
+        self.steps[name] = best.score
+        del self.steps[OFFSET]
+
+
+def _try_effect(base: Base, name: str) -> list[Trial]:
+    return [attempt(base, signature) for signature in signatures(base, name)]
+
+
+def _refit_arm(effects: tuple[str, ...], arm: Arm, nominal: Arm, data: Data, thorough: bool) -> Hypothesis:
+    found = refit(arm, nominal, data, CANDIDATE_LEVELS)
+    if thorough:
+        found = polish(found, nominal, data)
+    return Hypothesis(effects, found, score(found.arm, data))
+
+
+def _at_bound(hypothesis: Hypothesis) -> bool:
+    """Whether a parameter of its effects ran to the end of its range: no size of the effect explains the data."""
+    arm = hypothesis.refit.arm
+    for c in hypothesis.refit.coordinates:
+        section, name, *_ = c.path.split(".")
+        value = arm.value(c.path)
+        if section == "effects" and name in hypothesis.effects and value in (c.low, c.high):
+            return True
+    return False
+
+
+def measure_of(scores: Sequence[Score]) -> Callable[[Score], float]:
+    """Return the excess error by which hypotheses are judged: in windows, or freely replayed where none comes near.
+
+    A model that misses by far in one second is judged by the whole run, which shows what holds for long.
+    """
+    if min(s.windows for s in scores) > FAR_OFF:
+        return lambda s: excess(s.free_run)
+    return lambda s: excess(s.windows)
