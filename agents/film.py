@@ -50,7 +50,8 @@ def film(names: tuple[str, str], env_id: str, arm: str, path: Path) -> None:
         frame.paste(left, (0, 0))
         frame.paste(right, (WIDTH, 0))
         both.append(frame)
-    palette = both[-1].quantize(COLOURS)  # one for all, taken where the hub sticks and every colour is there
+    # One palette for all, from where the hub sticks and every colour is there; by coverage, so that small marks keep theirs.
+    palette = both[-1].quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE)
     both = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in both]
     path.parent.mkdir(parents=True, exist_ok=True)
     both[0].save(path, save_all=True, append_images=both[1:], duration=1000 // RATE, loop=0, optimize=True)
