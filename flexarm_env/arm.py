@@ -12,6 +12,7 @@ from flexarm_env.effects import Catalogue, Effect, catalogue
 from flexarm_env.effects.catalogue import LAW_PORTS
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.parameters import SECTIONS, SENSOR, Parameter, sensor_unit
+from flexarm_env.signals import INPUTS
 
 if TYPE_CHECKING:
     from flexarm_env.linear import LinearArm
@@ -93,9 +94,11 @@ class Arm:
             raise InputError(f"effect '{effect.name}' needs {' and '.join(missing)}, which arm '{self.name}' does not have")
 
     def has(self, need: str) -> bool:
-        """Whether the arm has a beam, a motor with an inertia of its own, or a sensor of that name."""
+        """Whether the arm has a beam, a motor with an inertia of its own, a sensor or an input of that name."""
         if need == "motor_inertia":
             return self.constants["drive"]["motor_inertia"] > 0.0
+        if need in INPUTS:
+            return need == self.input
         return need in self.constants if need == "beam" else need in self.sensors
 
     def can_have(self, name: str) -> bool:
@@ -184,7 +187,7 @@ class Arm:
                     varies = effect.varies if port == "friction" else port in ("torque", "drag")
                     parameters = tuple(values[key] for key in effect.parameters)
                     share = self.constants["drive"][effect.motor_share] if effect.motor_share else 0.0
-                    active.append(ActiveLaw(self.known.kinds[name, port], port, parameters, varies, share))
+                    active.append(ActiveLaw(self.known.kinds[name, port], port, parameters, varies, share, effect.reads))
         return Plant(self.structure(), active, self.known.laws, interval)
 
     def linearise(self, mode: str, interval: float) -> LinearArm:

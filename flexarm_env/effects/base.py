@@ -20,8 +20,10 @@ class Effect:
     - ``torque(…)`` returns a torque on the hub [Nm], from any of angle, speed, time.
     - ``drag(…)`` returns a force per length on the beam [N/m], from velocity [m/s].
     - ``drive(…)`` returns the command that gets through [A or V], from command, previous, interval [s].
+    - ``sensor(…)`` returns what each sensor of `reads` shows, in SI units, from reading (without the effect), angle of the hub
+      [rad], motor_angle [rad], time [s].
 
-    The last four run in the compiled kernel: plain arithmetic and `math` only.
+    The last five run in the compiled kernel: plain arithmetic and `math` only.
 
     Attributes:
         name: as in arm files and on the command line.
@@ -32,8 +34,9 @@ class Effect:
         source: paper or textbook.
         varies: whether its friction changes while the hub turns one way.
         motor_share: the constant of the drive that says which part of its friction acts on the motor; "" for none.
+        reads: the signals that its sensor port changes, those of them that the arm has.
         modifies: the effect that it changes and without which it is no candidate, "" for none.
-        needs: what the arm must have: "beam", "motor_inertia", or names of signals.
+        needs: what the arm must have: "beam", "motor_inertia", names of signals, or its input, "current" or "voltage".
         fitted: whether its parameters can be fitted (a count cannot).
     """
 
@@ -45,6 +48,7 @@ class Effect:
     source: ClassVar[str] = ""
     varies: ClassVar[bool] = False
     motor_share: ClassVar[str] = ""
+    reads: ClassVar[tuple[str, ...]] = ()
     modifies: ClassVar[str] = ""
     needs: ClassVar[tuple[str, ...]] = ()
     fitted: ClassVar[bool] = True

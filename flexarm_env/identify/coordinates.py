@@ -103,6 +103,8 @@ def effect_coordinates(arm: Arm, name: str, scales: Mapping[str, float], nominal
     for key, parameter in effect.parameters.items():
         if key in ("arm_angle", "motor_speed", "strain_mid", "strain_base", "tip_deflection") and key not in arm.sensors:
             continue  # an offset of a sensor that the arm does not have
+        if parameter.spread == 0.0:
+            continue
         known = nominal is not None and name in nominal.effects
         value = nominal.value(f"effects.{name}.{key}") if known and nominal else arm.value(f"effects.{name}.{key}")
         path = f"effects.{name}.{key}"

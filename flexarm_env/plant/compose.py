@@ -34,6 +34,7 @@ PORTS: dict[str, tuple[tuple[str, ...], str]] = {
     "torque": (("angle", "speed", "time"), "0.0"),
     "drag": (("velocity",), "0.0"),
     "drive": (("command", "previous", "interval"), "command"),
+    "sensor": (("reading", "angle", "motor_angle", "time"), "reading"),
 }
 
 #: What the kernels' annotations stand for. Without a signature numba compiles a kernel for every literal it is given.

@@ -8,7 +8,7 @@ from numba import njit
 
 from flexarm_env.plant.events import AGAIN, GEAR_OPEN, GEARS, NOTHING, next_event
 from flexarm_env.plant.glide import glide
-from flexarm_env.plant.laws import drive_law
+from flexarm_env.plant.laws import drive_law, sensor_law
 from flexarm_env.plant.layout import (
     BLOCKS,
     BODIES,
@@ -21,6 +21,7 @@ from flexarm_env.plant.layout import (
     EARLY_LENGTH,
     EARLY_SUBSTEPS,
     GAP,
+    GEAR_RATIO,
     GEAR_SIDE,
     GLIDES,
     HEADER,
@@ -36,6 +37,7 @@ from flexarm_env.plant.layout import (
     POINTS,
     REACH,
     RESPONSES,
+    SENSOR_LAWS,
     SIGNALS,
     SPEED,
     STATES,
@@ -59,6 +61,7 @@ from flexarm_env.plant.propagate import (
 )
 from flexarm_env.plant.slide import DEPTH, prepare_slide, slide, slide_table, table_size
 from flexarm_env.plant.stick_slip import (
+    angle_of,
     enter,
     evaluate_forces,
     is_stuck,
@@ -255,6 +258,18 @@ def uneven_step(
 
 
 @njit
+def show(d: Numbers, n: Places, s: Numbers, out: Numbers, at: int) -> None:
+    """Turn readings into what the sensors' laws make of them."""
+    mode, place = int(s[MODE]), n[SENSOR_LAWS]
+    angle = angle_of(d, n, s, mode, 0, s, HEADER)
+    motor_angle = d[GEAR_RATIO] * angle_of(d, n, s, mode, n[BODIES] - 1, s, HEADER)
+    for j in range(n[place]):
+        law = place + 1 + 3 * j
+        i = at + n[law + 2]
+        out[i] = sensor_law(n[law], out[i], angle, motor_angle, s[TIME], d, n[law + 1])
+
+
+@njit
 def measure(d: Numbers, n: Places, s: Numbers, out: Numbers, at: int) -> None:
     """Write the readings, without noise, to out from `at` on."""
     here = record(n, int(s[MODE]))
@@ -263,6 +278,8 @@ def measure(d: Numbers, n: Places, s: Numbers, out: Numbers, at: int) -> None:
         row = here + n[OUTPUT_DRIVERS] + i * n[DRIVERS]
         total = inlined_dot(d, here + n[OUTPUT] + i * size, s, HEADER, size) + d[row + W_ONE]
         out[at + i] = total + d[row + W_HELD_HUB] * s[HELD_HUB] + d[row + W_HELD_MOTOR] * s[HELD_MOTOR]
+    if n[n[SENSOR_LAWS]] > 0:
+        show(d, n, s, out, at)
 
 
 @njit

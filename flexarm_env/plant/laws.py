@@ -31,3 +31,9 @@ def drag_law(kind, velocity, d, k):
 def drive_law(kind, command, previous, interval, d, k):
     """Command that effect `kind` lets through, from the one given and the one before."""
     return command
+
+
+@njit
+def sensor_law(kind, reading, angle, motor_angle, time, d, k):
+    """Reading that effect `kind` makes of one without it."""
+    return reading

@@ -19,8 +19,8 @@ C0, C1, RESPONSES, PHYSICAL, MODAL, FORCING, FORCE_COLUMNS, SPEED, SPEED_WEIGHT,
 WINDUP, WINDUP_WEIGHT, HOLD, HOLD_WEIGHT, HOLD_DRIVERS, HOLD_FORCES, DRAG_VELOCITY = range(24, 31)
 OUTPUT, OUTPUT_DRIVERS = 31, 32
 FRICTION_LAWS, TORQUE_LAWS, DRAG_LAWS, DRIVE_LAWS, PARAMETERS, GLIDES, GLIDE, REACH = range(33, 41)
-MESH, MESH_WEIGHT = 41, 42
-COUNTS = 43
+MESH, MESH_WEIGHT, SENSOR_LAWS = 41, 42, 43
+COUNTS = 44
 
 # --- one block's numbers in GLIDE, all that a step without events needs: C, S, R₀, S + c₁ R₀, c₀, c₁, how much its
 # amplitude bends the tested row, that row's two numbers, its forcing by command, hub torque, 1, held hub, two each
@@ -29,7 +29,7 @@ G_COMMAND, G_HUB, G_ONE, G_HELD = 9, 11, 13, 15
 GLIDE_SIZE = 17
 
 # --- d: single constants, before the modes' records
-GAP, TOLERANCE, INTERVAL, EARLY_LENGTH, LATE_LENGTH, HUB_RUBS, MOTOR_RUBS = range(7)
+GAP, TOLERANCE, INTERVAL, EARLY_LENGTH, LATE_LENGTH, HUB_RUBS, MOTOR_RUBS, GEAR_RATIO = range(8)
 CONSTANTS = 8
 
 # --- s: the state; block coordinates z from HEADER on

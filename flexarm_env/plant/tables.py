@@ -19,6 +19,7 @@ RESPONSE = 5
 LONGEST_STEP, LONGEST_STEP_WITH_DRAG = 5e-3, 2.5e-3
 #: Change of a force [Nm, N/m] below which the sweeps that fit it stop.
 TOLERANCE = 1e-12
+LAW_LISTS = (at.FRICTION_LAWS, at.TORQUE_LAWS, at.DRAG_LAWS, at.DRIVE_LAWS, at.SENSOR_LAWS)
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,8 @@ class ActiveLaw:
     """One law at work: its place in the catalogue's list of laws, its parameters in the law's order.
 
     `varies` says that it changes while a body turns one way, so that the force must be fitted over each step.
-    `motor_share` is the part of it that acts on the motor where motor and hub are two bodies.
+    `motor_share` is the part of it that acts on the motor where motor and hub are two bodies, `reads` the signals that it
+    changes.
     """
 
     kind: int
@@ -34,6 +36,7 @@ class ActiveLaw:
     parameters: tuple[float, ...]
     varies: bool
     motor_share: float = 0.0
+    reads: tuple[str, ...] = ()
 
 
 def pack(
@@ -74,16 +77,16 @@ def pack(
     steps = np.where(parts > 0.0, np.maximum(np.ceil(parts / longest - 1e-9), 1), 0)
     n[at.EARLY_SUBSTEPS], n[at.LATE_SUBSTEPS] = steps.astype(int)
     n[at.PARAMETERS] = at.CONSTANTS + count * place
-    lists, parameters = _law_lists(active, int(n[at.PARAMETERS]), bodies)
+    lists, parameters = _law_lists(active, int(n[at.PARAMETERS]), bodies, model.signals)
     laws: list[int] = []
-    for key, rows in zip((at.FRICTION_LAWS, at.TORQUE_LAWS, at.DRAG_LAWS, at.DRIVE_LAWS), lists, strict=True):
+    for key, rows in zip(LAW_LISTS, lists, strict=True):
         n[key] = at.COUNTS + len(laws)
         laws += rows
     lengths = parts / np.maximum(steps, 1)
     gap = structure.gear_gap / structure.gear_ratio
     shares = [law.motor_share if bodies == 2 else 0.0 for law in active if law.port == "friction"]
     rubs = [sum(1.0 - share for share in shares), sum(shares)]
-    head = [gap, TOLERANCE, interval, lengths[0], lengths[1], *rubs, 0.0]
+    head = [gap, TOLERANCE, interval, lengths[0], lengths[1], *rubs, structure.gear_ratio]
     d = np.concatenate([head, *(v.ravel() for record in records for v in record.values()), parameters])
     return d, np.concatenate([n, np.array(laws, dtype=np.int64)]), whole
 
@@ -152,8 +155,13 @@ def _weights(rows: Matrix, c0: Matrix, c1: Matrix) -> Matrix:
     return weights
 
 
-def _law_lists(active: Sequence[ActiveLaw], start: int, bodies: int) -> tuple[list[list[int]], list[float]]:
-    """Counts, kinds and places of the laws by port, and their parameters, each law's after hub's and motor's share."""
+def _law_lists(
+    active: Sequence[ActiveLaw], start: int, bodies: int, signals: Sequence[str]
+) -> tuple[list[list[int]], list[float]]:
+    """Counts, kinds and places of the laws by port, and their parameters, each law's after hub's and motor's share.
+
+    A sensor's law stands once for each signal that it changes, whose number comes third.
+    """
     parameters: list[float] = []
     lists = []
     for port in ("friction", "torque", "drag", "drive"):
@@ -165,4 +173,11 @@ def _law_lists(active: Sequence[ActiveLaw], start: int, bodies: int) -> tuple[li
             rows += [law.kind, start + len(parameters)]
             parameters += law.parameters
         lists.append(rows)
-    return lists, parameters
+    rows = [0]
+    for law in (law for law in active if law.port == "sensor"):
+        changed = [number for number, signal in enumerate(signals) if signal in law.reads]
+        rows[0] += len(changed)
+        for number in changed:
+            rows += [law.kind, start + len(parameters), number]
+        parameters += law.parameters
+    return [*lists, rows], parameters

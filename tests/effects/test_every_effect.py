@@ -21,7 +21,7 @@ from flexarm_env.effects.catalogue import LAW_PORTS, load_effect
 from flexarm_env.errors import InputError
 from flexarm_env.identify.simulate import simulate
 from flexarm_env.plant.compose import PORTS, compose
-from flexarm_env.signals import SIGNALS
+from flexarm_env.signals import INPUTS, SIGNALS
 from flexarm_env.units import factor
 
 NAMES = list(catalogue())
@@ -39,6 +39,8 @@ GRID = {
     "command": (-6.0, -0.05, 0.0, 0.05, 6.0),
     "previous": (-6.0, 0.0, 2.0),
     "interval": (0.002, 0.005),
+    "reading": (-3.0, 0.0, 0.2),
+    "motor_angle": (-4.0, 0.0, 1.1),
 }
 
 
@@ -75,7 +77,9 @@ def test_it_says_what_it_is(name):
         assert text
         assert text.strip()
     assert set(effect.confused_with) <= set(NAMES) - {name}
-    assert set(effect.needs) <= {"beam", "motor_inertia", *SIGNALS}
+    assert set(effect.needs) <= {"beam", "motor_inertia", *SIGNALS, *INPUTS}
+    assert set(effect.reads) <= set(SIGNALS)
+    assert bool(effect.reads) == (effect.port("sensor") is not None)
 
 
 @pytest.mark.parametrize("name", NAMES)
