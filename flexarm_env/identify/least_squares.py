@@ -16,6 +16,10 @@ Floats = NDArray[np.float64]
 Residual = Callable[[Floats], Floats]
 
 LARGEST_STEP = 3.0
+#: Steps along one Jacobian, which each corrects for the next, while they lower the cost by this share; and trials of the first.
+STEPS, WORTHWHILE, TRIALS = 4, 0.01, 5
+#: Damping below which a step is that of Gauss and Newton.
+LEAST_HELPFUL = 1e-3
 
 
 @dataclass
@@ -74,22 +78,33 @@ def minimise(
         j[:, :known] = frozen
     for _ in range(iterations):
         j[:, known:] = jacobian(residual, x, r, steps, range(known, len(x)))
-        normal = j.T @ j + np.diag(prior**-2.0)
-        slope = j.T @ r + x / prior**2
         before = cost
-        for _ in range(6):
-            step = -np.linalg.solve(normal + damping * np.diag(np.diag(normal)), slope)
-            step = np.clip(step, -LARGEST_STEP, LARGEST_STEP)
-            trial = residual(x + step)
-            new = cost_of(trial, x + step, prior)
-            if new < cost:
-                x, r, cost = x + step, trial, new
-                damping = max(damping * 0.2, 1e-7)
+        for number in range(STEPS):
+            normal = j.T @ j + np.diag(prior**-2.0)
+            slope = j.T @ r + x / prior**2
+            last = cost
+            for _ in range(1 if number else TRIALS):
+                step = -np.linalg.solve(normal + damping * np.diag(np.diag(normal)), slope)
+                step = np.clip(step, -LARGEST_STEP, LARGEST_STEP)
+                trial = residual(x + step)
+                new = cost_of(trial, x + step, prior)
+                if new < cost:
+                    j += _secant_correction(trial - r - j @ step, step, np.diag(normal))
+                    x, r, cost = x + step, trial, new
+                    damping = max(damping * 0.2, 1e-7)
+                    break
+                damping = max(10.0 * damping, LEAST_HELPFUL)
+            if last - cost < WORTHWHILE * last:
                 break
-            damping *= 6.0
         if before - cost < tolerance * before:
             break
     return Solution(x, cost, r, j)
+
+
+def _secant_correction(missed: Floats, step: Floats, weights: Floats) -> Floats:
+    """Return what a Jacobian lacks to give what a step changed (Broyden, Math. Comput. 19 (1965) 577), in weighted x."""
+    along = weights * step
+    return np.outer(missed, along / (along @ step))
 
 
 def covariance(j: Floats, residual: Floats, prior: Floats, block: int) -> Floats:

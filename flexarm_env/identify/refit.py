@@ -27,6 +27,8 @@ Progress = Callable[[float, str], None]
 
 #: Process noise of the levels that a fit goes through, over the rms of the drive's torque.
 LEVELS = (0.03, 0.003, 0.0003)
+#: Relative decrease of the cost at which a level is left, and at which the last one is.
+ON_THE_WAY, AT_THE_END = 1e-2, 1e-4
 QUANTILE_90 = 1.6449
 #: Relative standard deviation that no value beats: no model is more exact than this.
 BEST_MODEL = 0.005
@@ -66,12 +68,13 @@ def refit(arm: Arm, nominal: Arm, data: Data, levels: Sequence[float] = LEVELS, 
     scale, own = torque_scale(arm, data.runs), arm.constants["drive"]["torque_noise"]
     noises = [level * scale for level in levels if level * scale > own]
     noises += [own] * 2  # twice, since the first pass weighs the signals by errors that it then removes
+    tolerances = [ON_THE_WAY] * (len(noises) - 1) + [AT_THE_END]
     coordinates = free_coordinates(arm, nominal, data)
     x = position(arm, coordinates)
-    for noise in noises:
+    for noise, tolerance in zip(noises, tolerances, strict=True):
         problem = Problem(arm, data, coordinates, noise, np.ones((len(data.runs), len(data.signals))))
         problem.weigh(place_values(arm, coordinates, x), held)
-        solution = minimise(problem.residual, x, problem.prior, steps_at(coordinates, x), iterations)
+        solution = minimise(problem.residual, x, problem.prior, steps_at(coordinates, x), iterations, tolerance=tolerance)
         x = solution.x
     return Refit(place_values(arm, coordinates, x), coordinates, solution, problem)
 

@@ -16,8 +16,8 @@ Floats = NDArray[np.float64]
 STILL, HELD_TIME = 10.0, 0.1
 #: A beam signal of a held hub that scatters by this many standard deviations of its noise vibrates.
 VIBRATES = 2.0
-#: First samples that leave rest by this many standard deviations.
-SIGNIFICANT = 6.0
+#: First samples that leave rest by this many standard deviations, and a first sample that is one of rest.
+SIGNIFICANT, RESTS = 6.0, 3.0
 FIRST_SAMPLES, FIRST_TIME = 20, 0.004
 #: Longest stretch [s] to which the state at the start is fitted: of a held hub, of a moving one.
 LONGEST_HELD, LONGEST_MOVING = 0.5, 0.15
@@ -76,14 +76,15 @@ def _hub(time: Floats, measured: Floats, signals: list[str], noise: Floats) -> t
     column = signals.index("arm_angle")
     angle, sigma = measured[:, column], noise[column]
     leaves = np.abs(angle - angle[:3].mean()) > STILL * sigma
-    turns = False
+    turns = rests = False
     if "motor_speed" in signals:
         tach = signals.index("motor_speed")
         leaves |= np.abs(measured[:, tach]) > SIGNIFICANT * noise[tach]
         turns = abs(measured[:3, tach].mean()) > SIGNIFICANT * noise[tach]
+        rests = bool(np.all(np.delete(np.abs(measured[0]) < RESTS * noise, column)))
     still = int(np.argmax(leaves)) if leaves.any() else len(angle)
     count = min(len(angle), FIRST_SAMPLES)
-    if still < count:  # curved, since an arm that is driven at once moves too
+    if still < count and not rests:  # curved, since an arm that is driven at once moves too
         fit, spread = np.polyfit(time[:count], angle[:count], 2, cov="unscaled")
         if turns or abs(fit[1]) > SIGNIFICANT * sigma * np.sqrt(spread[1, 1]):
             return float(fit[2]), float(fit[1]), 0
