@@ -71,14 +71,14 @@ DRIVE = {
         meaning="of the touching gears, arm side; 0: motor and hub are one body",
     ),
     "motor_coulomb_share": Parameter(
-        "", 0.0, 1.0, 0.351, spread=0.0, meaning="part of Coulomb friction on the motor side of the gears", source=TABLE
+        "", 0.0, 1.0, 0.351, spread=0.3, meaning="part of Coulomb friction on the motor side of the gears", source=TABLE
     ),
     "motor_stiction_share": Parameter(
         "",
         0.0,
         1.0,
         0.5696,
-        spread=0.0,
+        spread=0.3,
         meaning="part of what static friction adds on the motor side of the gears",
         source=TABLE,
     ),

@@ -16,6 +16,8 @@ Floats = NDArray[np.float64]
 #: A fit sees an unbounded prior as this many typical sizes wide, so that a direction without information stays put.
 WIDEST = 30.0
 BASE_STEP, EFFECT_STEP = 1e-3, 1e-2
+#: What splits friction between motor and hub, which are one body unless the gears give way.
+SHARES = ("drive.motor_coulomb_share", "drive.motor_stiction_share")
 SENSOR_SPREAD = {"arm_angle": 0.0, "motor_speed": 0.03, "strain_mid": 0.15, "strain_base": 0.15, "tip_deflection": 0.15}
 
 
@@ -67,9 +69,12 @@ class Coordinate:
 def base_coordinates(arm: Arm, nominal: Arm, scales: Mapping[str, float]) -> list[Coordinate]:
     """Return what a refit of the constants moves: all with a spread, around their values in the nominal arm."""
     found = []
+    one_body = not arm.structure().separate_motor
     for section, table in arm.constants.items():
         for key in table:
             path = f"{section}.{key}"
+            if one_body and path in SHARES:
+                continue
             found += _with_prior(path, nominal.value(path), arm.parameter(path).spread, arm)
     for signal in arm.sensors:
         path = f"sensors.{signal}.gain"

@@ -27,6 +27,8 @@ Progress = Callable[[float, str], None]
 
 #: Process noise of the levels that a fit goes through, over the rms of the drive's torque.
 LEVELS = (0.03, 0.003, 0.0003)
+#: A refit whose error on the fitted part is below the first is done; one that lowers it to the second is worth another.
+WELL, GOES_ON, MOST_AGAIN = 1.03, 0.98, 4
 #: Relative decrease of the cost at which a level is left, and at which the last one is.
 ON_THE_WAY, AT_THE_END = 1e-2, 1e-4
 QUANTILE_90 = 1.6449
@@ -88,11 +90,19 @@ def as_it_is(arm: Arm, data: Data) -> Refit:
 
 
 def best_refit(nominal: Arm, data: Data) -> Refit:
-    """Refit the constants; where they were right already, so that nothing is gained, stay near them."""
+    """Refit the constants, again while that helps; where they were right already, so that nothing is gained, stay near them."""
+    before = score(nominal, data, held_out=False).windows
     found = refit(nominal, nominal, data)
-    if score(found.arm, data, held_out=False).windows > score(nominal, data, held_out=False).windows:
-        found = refit(nominal, nominal, data, ())
-    return found
+    now = score(found.arm, data, held_out=False).windows
+    for _ in range(MOST_AGAIN):
+        if now < WELL:
+            break
+        other = refit(found.arm, nominal, data)
+        then = score(other.arm, data, held_out=False).windows
+        if then > GOES_ON * now:
+            break
+        found, now = other, then
+    return found if now <= before else refit(nominal, nominal, data, ())
 
 
 def polish(found: Refit, nominal: Arm, data: Data) -> Refit:
@@ -100,6 +110,8 @@ def polish(found: Refit, nominal: Arm, data: Data) -> Refit:
 
     What the constants did to make up for a missing effect may have led them where there is no way back.
     """
+    if score(found.arm, data, held_out=False).windows < WELL:
+        return found
     added = {name: found.arm.effects[name] for name in found.arm.effects if name not in nominal.effects}
     start = replace(nominal, effects={**nominal.effects, **added})
     other = refit(start, nominal, data)

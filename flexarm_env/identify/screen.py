@@ -22,6 +22,8 @@ LEAST_EXPLAINED = 0.005
 #: Starts whose size is scanned, and the factors.
 STARTS_SCANNED = 2
 SIZES = (0.15, 0.4, 0.75, 1.2, 2.5)
+#: An effect that explains this share of what its secant promises grows in proportion; largest factor taken from a secant.
+LINEAR, LARGEST_FACTOR = 0.7, 10.0
 ITERATIONS = 4
 #: Process noise at which candidates are screened, over the rms of the drive's torque.
 SCREENING_LEVEL = 0.01
@@ -42,11 +44,12 @@ class Base:
 
 @dataclass(frozen=True)
 class Signature:
-    """How well an effect, started at some values, would explain the residual."""
+    """How well an effect, started at some values, would explain the residual, and by what factor its size is off for that."""
 
     effect: str
     start: dict[str, float]
     explained: float
+    factor: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -82,13 +85,11 @@ def candidates(arm: Arm) -> list[str]:
 def signatures(base: Base, effect: str) -> list[Signature]:
     """Return the most promising start of an effect, if it explains anything of the residual.
 
-    The effect's own starts are ranked by a finite secant; the best are scanned over sizes, since the error of a gap or a
-    delay has a narrow valley that no slope finds from outside.
+    The effect's own starts are ranked by a finite secant; the best are tried at the size that it gives.
     """
     starts = [v for start in base.problem.arm.known[effect].starts() for v in _by_sensor(base, effect, start)]
     secants = sorted((_secant(base, effect, start) for start in starts), key=lambda s: -s.explained)
-    scanned = [_at_size(base, s, factor) for s in secants[:STARTS_SCANNED] for factor in _factors(base, s)]
-    best = max(scanned, key=lambda s: s.explained)
+    best = max((_at_its_size(base, s) for s in secants[:STARTS_SCANNED]), key=lambda s: s.explained)
     return [best] if best.explained > LEAST_EXPLAINED else []
 
 
@@ -114,11 +115,28 @@ def _secant(base: Base, effect: str, start: dict[str, float]) -> Signature:
     left = _unexplained(base, base.residual)
     power, total = float(change @ change), float(left @ left)
     if power <= 1e-12 * total:
-        return Signature(effect, start, 0.0)
+        return Signature(effect, start, 0.0, 0.0)
     along = float(change @ left)
     if along > 0.0 and "phase" in start:  # the sine wants to be turned round
         start = {**start, "phase": start["phase"] - float(np.copysign(np.pi, start["phase"]))}
-    return Signature(effect, start, along**2 / power / total)
+        along = -along
+    return Signature(effect, start, along**2 / power / total, -along / power)
+
+
+def _at_its_size(base: Base, secant: Signature) -> Signature:
+    """Return an effect at the size that its secant gives, or, where that does not hold, at the best of a scan.
+
+    The error of a gap or a delay has a narrow valley that no slope finds from outside.
+    """
+    factors = _factors(base, secant)
+    if factors == (1.0,) or secant.explained == 0.0:
+        return _at_size(base, secant, 1.0)
+    found = []
+    if secant.factor > 0.0 or min(factors) < 0.0:
+        found.append(_at_size(base, secant, float(np.clip(secant.factor, -LARGEST_FACTOR, LARGEST_FACTOR))))
+        if found[0].explained > LINEAR * secant.explained:
+            return found[0]
+    return max(found + [_at_size(base, secant, factor) for factor in factors], key=lambda s: s.explained)
 
 
 def _factors(base: Base, signature: Signature) -> tuple[float, ...]:

@@ -25,12 +25,15 @@ from flexarm_env.identify.screen import (
 
 #: How many candidates are refitted in full in each round, and how many if those leave the model far off.
 FINALISTS, MOST_FINALISTS = 4, 12
-#: And only those that lower the cost of the screening to this share.
-LEAST_CHANGE = 0.97
+#: And only those that lower the cost of the screening to the first share, by no less than the second of what the best does.
+LEAST_CHANGE, LEAST_OF_BEST = 0.97, 0.3
 #: A held-out error below this leaves nothing to explain.
 PERFECT = 1.1
 #: Least share of the excess error that an effect must remove to be accepted, and all accepted ones together.
 LEAST_GAIN, LEAST_TOTAL_GAIN = 0.25, 0.5
+#: Excess error, as a variance over the noise's, that an effect must remove at least, and as a share of that of the refitted
+#: constants: what is left of a large error comes from fits that end early, too.
+LEAST_REMOVED, LEAST_OF_FIRST = 0.2, 1e-3
 #: Held-out error in windows above which models are judged by their free replays.
 FAR_OFF = 3.0
 OFFSET = "constant_torque"
@@ -73,22 +76,22 @@ class Search:
         done = 0.1
         while len(self.accepted) < MOST_EFFECTS and self._add_one(done, 0.3):
             done = min(done + 0.3, 0.7)
-            if self.best.windows < PERFECT:
-                break
         self._drop_useless()
         # Where much is missing still, no rival of an offset can be told from another.
         if OFFSET in self.accepted and self.equivalent[self.accepted.index(OFFSET)] == [OFFSET] and self.best.windows <= FAR_OFF:
             self._swap_offset()
 
     def _add_one(self, done: float, share: float) -> bool:
-        worth = self.best.windows >= PERFECT
+        worth = not self._is_enough(self.best)
         trials = self._screen(done, 0.6 * share)
         if not self.ranking:
             self._rank_screened(trials)
         if not worth:
             return False
         control = next(t for t in trials if not t.effect)
-        better = [t for t in trials if t.effect and t.cost < LEAST_CHANGE * control.cost]
+        lowest = min(t.cost for t in trials)
+        level = min(LEAST_CHANGE * control.cost, control.cost - LEAST_OF_BEST * (control.cost - lowest))
+        better = [t for t in trials if t.effect and t.cost < level]
         found: list[Hypothesis] = []
         for first in range(0, MOST_FINALISTS, FINALISTS):
             batch = better[first : first + FINALISTS]
@@ -97,7 +100,7 @@ class Search:
                 found += self._refit_all(names, arms, done + 0.6 * share, 0.2 * share, thorough=first > 0)
             if not batch or min(h.score.windows for h in found) < FAR_OFF:
                 break
-        if found and min(h.score.windows for h in found) >= PERFECT:
+        if found and not any(self._is_enough(h.score) for h in found):
             found += self._with_offset(found, done + 0.8 * share, 0.2 * share)
         if self.accepted:
             self._go_on()
@@ -118,10 +121,10 @@ class Search:
         now = measure(self.best)
         singles = [h for h in found if len(h.effects) == 1]
         winner = found[0]
-        if len(winner.effects) > 1 and singles and measure(singles[0].score) <= (1.0 + LEAST_GAIN) * measure(winner.score):
+        if len(winner.effects) > 1 and singles and not self._is_worth(singles[0].score, winner.score, measure):
             winner = singles[0]
         removed = now - measure(winner.score)
-        if removed < LEAST_GAIN * now or (self.accepted and self._stays_lost(winner.score)):
+        if not self._is_worth(self.best, winner.score, measure) or (self.accepted and self._stays_lost(winner.score)):
             return False
         level = measure(winner.score) + SAME_GAIN * removed
         rivals = [h for h in found if len(h.effects) == len(winner.effects)]
@@ -134,6 +137,19 @@ class Search:
             self.steps[effect] = value
         self.found, self.best = refitted, value
         return True
+
+    def _least(self, measure: Callable[[Score], float]) -> float:
+        """Return the excess error that an effect must remove at least."""
+        return max(LEAST_REMOVED, LEAST_OF_FIRST * measure(self.first))
+
+    def _is_enough(self, found: Score) -> bool:
+        """Whether an error leaves nothing to explain."""
+        return found.windows < PERFECT or excess(found.windows) < self._least(lambda score: excess(score.windows))
+
+    def _is_worth(self, without: Score, found: Score, measure: Callable[[Score], float]) -> bool:
+        """Whether one more effect removes enough of the excess error."""
+        removed = measure(without) - measure(found)
+        return removed >= max(LEAST_GAIN * measure(without), self._least(measure))
 
     def _stays_lost(self, found: Score) -> bool:
         """Whether one more effect leaves the model far off without halving its error both in windows and freely replayed.
@@ -212,7 +228,7 @@ class Search:
             without = refit(self.found.arm.without_effect(effect), self.nominal, self.data, CANDIDATE_LEVELS)
             value = score(without.arm, self.data)
             measure = measure_of([value, self.best])
-            if measure(value) - measure(self.best) < LEAST_GAIN * measure(value):
+            if not self._is_worth(value, self.best, measure):
                 self.found, self.best = without, value
                 place = self.accepted.index(effect)
                 del self.accepted[place], self.equivalent[place], self.steps[effect]

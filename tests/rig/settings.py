@@ -86,6 +86,7 @@ EFFECTS = {
     "off_mid": (0.0, "V", "sensor offset"),
     "off_base": (0.0, "V", "sensor offset"),
     "late": (0.0, "s", "all sensors are sampled this late"),
+    "pd": (1.0, "1", "factor on the gains of the controller that drives the experiment"),
     "noise": (1.0, "1", "factor on all sensor noise"),
     "quant": (1.0, "1", "factor on all converter steps"),
     "hum": (0.0, "Nm", "periodic torque on the hub"),

@@ -47,6 +47,7 @@ def simulate(
     key = experiment if isinstance(experiment, str) else "array"
     noise = v["noise"] * SIGMA * stream(seed, key, "noise").standard_normal((n, 4))
     modal = make_modes(v, beam, par["h"])
+    gains = (v["pd"] * gains[0], v["pd"] * gains[1], gains[2])
     command, shown, truth = run(par, make_sense(v, par), modal, feed, target, gains, noise)
     out = {"time": t, "current": command}
     out |= dict(zip(SIGNALS, shown.T, strict=True))

@@ -1,0 +1,86 @@
+"""Find the size of each effect at which a model with refitted constants misses by so many times the noise."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+
+from joblib import Parallel, delayed
+
+from benchmarks.hidden_effects.cases import EXPERIMENTS, SIZES, STRENGTHS, Case
+from benchmarks.hidden_effects.effects import CATALOGUE, OUTSIDE, Hidden
+from benchmarks.hidden_effects.machine import record
+from flexarm_env import Arm
+from flexarm_env.files import write_whole
+from flexarm_env.identify.data import prepare
+from flexarm_env.identify.problem import score
+from flexarm_env.identify.refit import refit
+
+#: Strengths that are met to this share, in at most so many trials, and by how much (a logarithm) one may be missed.
+NEAR, TRIALS, MISSED = 0.15, 5, 0.35
+#: The first size tried is weaker than the strongest by this, and the last (logarithms).
+FIRST, LAST = 1.5, 8.0
+LEAST = 0.05
+
+
+def strength_at(hidden: Hidden, size: float) -> float:
+    """Return the excess error over the noise that the refitted constants leave, all constants but the effect being right."""
+    middle = {key: 0.5 * (low + high) if low > -1.0 else 0.3 * high for key, (low, high) in hidden.others.items()}
+    case = Case("", "one", (), 0.0, {hidden.setting: size, **middle}, EXPERIMENTS[0], seed=1)
+    arm, data = prepare(Arm.load("thesis-fem"), record(case))
+    found = refit(arm, arm, data, levels=(), iterations=3)
+    error = min(score(found.arm, data).windows, score(arm, data).windows)
+    return math.sqrt(max(error**2 - 1.0, 0.0))
+
+
+def find(effect: str, hidden: Hidden) -> tuple[str, dict[str, float]]:
+    """Return the effect's name and its size by strength, without strengths that no sensible size reaches."""
+    known: list[tuple[float, float]] = []  # logarithms of the weakening from the strongest and of the strength
+
+    def size(weaker: float) -> float:
+        return hidden.strongest * math.exp(weaker if hidden.inverse else -weaker)
+
+    def measured(weaker: float) -> float:
+        strength = strength_at(hidden, size(weaker))
+        known.append((weaker, math.log(max(strength, LEAST))))
+        return strength
+
+    out = {}
+    for strength in STRENGTHS[::-1]:
+        for _ in range(TRIALS):
+            weaker = _next(known, math.log(strength))
+            if weaker is None or abs(measured(weaker) - strength) < NEAR * strength:
+                break
+        nearest = min(known, key=lambda pair: abs(pair[1] - math.log(strength)))
+        if abs(nearest[1] - math.log(strength)) < MISSED:
+            out[f"{strength:g}"] = float(f"{size(nearest[0]):.3g}")
+    return effect, dict(sorted(out.items(), key=lambda item: float(item[0])))
+
+
+def _next(known: list[tuple[float, float]], wanted: float) -> float | None:
+    """Return where to try next: between the neighbours of what is wanted, else along a straight line; None past either end."""
+    if not known:
+        return FIRST
+    above = max((k for k in known if k[1] >= wanted), default=None)
+    below = min((k for k in known if k[1] < wanted), default=None)
+    if above and below:
+        share = (above[1] - wanted) / (above[1] - below[1])
+        return above[0] + min(max(share, 0.1), 0.9) * (below[0] - above[0])
+    near = above or below
+    assert near is not None
+    there = min(max(near[0] + near[1] - wanted, 0.0), LAST)
+    past = any(k[0] == there for k in known) or (below is not None and there >= below[0])
+    return None if past else there
+
+
+def calibrate(jobs: int, say: Callable[[str], None]) -> None:
+    """Write the sizes of all effects."""
+    everything = CATALOGUE | OUTSIDE
+    found: dict[str, dict[str, float]] = {}
+    for effect, by_strength in Parallel(n_jobs=jobs, return_as="generator")(
+        delayed(find)(effect, hidden) for effect, hidden in everything.items()
+    ):
+        found[effect] = by_strength
+        say(f"{effect}: {by_strength}")
+    write_whole(SIZES, json.dumps(found, indent=1) + "\n")

@@ -1,0 +1,104 @@
+"""The list of cases: from one seed always the same."""
+
+from __future__ import annotations
+
+import json
+import zlib
+from dataclasses import asdict, dataclass
+from functools import lru_cache
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.hidden_effects.effects import CATALOGUE, CONSTANTS, OUTSIDE, Hidden
+
+SIZES = Path(__file__).parent / "sizes.json"
+STRENGTHS = (1.0, 3.0, 10.0)
+#: By how much the model's constants are wrong, each of them evenly up to this share.
+WRONG = (0.0, 0.1, 0.3)
+NULLS, PAIRS = 60, 40
+#: What the runs of a case are: the rig's experiments, the factor on the controller's gains, and a known payload [kg].
+EXPERIMENTS = (
+    (("pulse", 1.0, 0.0), ("square", 1.0, 0.0), ("sweep", 1.0, 0.0)),
+    (("pulse", 1.0, 0.0), ("square", 0.6, 0.0), ("sweep", 1.5, 0.0)),
+    (("pulse", 1.0, 0.0), ("square", 1.0, 0.15), ("sweep", 1.0, 0.0)),
+)
+
+
+@dataclass(frozen=True)
+class Case:
+    """One machine to be diagnosed.
+
+    Attributes:
+        name: its own.
+        kind: "one", "two", "outside" or "null".
+        effects: hidden, as the catalogue (or OUTSIDE) calls them.
+        strength: excess error after a refit of the constants, over the noise; 0 for a null.
+        settings: of the rig.
+        runs: experiment, factor on the controller's gains, known payload [kg] of each.
+        seed: of its noise and of its experiments' details.
+    """
+
+    name: str
+    kind: str
+    effects: tuple[str, ...]
+    strength: float
+    settings: dict[str, float]
+    runs: tuple[tuple[str, float, float], ...]
+    seed: int
+
+    def as_json(self) -> dict[str, Any]:
+        """Return plain data."""
+        return asdict(self)
+
+
+@lru_cache
+def sizes() -> dict[str, dict[str, float]]:
+    """Return the size of each effect at each strength: what `python -m benchmarks.hidden_effects --calibrate` found."""
+    found: dict[str, dict[str, float]] = json.loads(SIZES.read_text())
+    return found
+
+
+def stream(seed: int, name: str) -> np.random.Generator:
+    """Return the random numbers of a case: those of the others do not move them."""
+    return np.random.default_rng([seed, zlib.crc32(name.encode())])
+
+
+def settings_of(hidden: Hidden, size: float, draw: np.random.Generator) -> dict[str, float]:
+    """Return the rig's settings for an effect of a size."""
+    sign = draw.choice([-1.0, 1.0]) if hidden.signed else 1.0
+    others = {key: float(draw.uniform(*limits)) for key, limits in sorted(hidden.others.items())}
+    return {hidden.setting: float(sign * size), **others}
+
+
+def _case(seed: int, name: str, kind: str, effects: tuple[str, ...], strength: float) -> Case:
+    draw = stream(seed, name)
+    known = CATALOGUE | OUTSIDE
+    settings: dict[str, float] = {}
+    for effect in effects:
+        settings |= settings_of(known[effect], sizes()[effect][f"{strength:g}"], draw)
+    wrong = WRONG[draw.integers(len(WRONG))]
+    factors = {f"{name}_x": float(1.0 + draw.uniform(-wrong, wrong)) for name in CONSTANTS}
+    if wrong:
+        settings |= factors
+    runs = EXPERIMENTS[draw.integers(len(EXPERIMENTS))]
+    return Case(name, kind, effects, strength, settings, runs, int(draw.integers(2**31)))
+
+
+def cases(seed: int) -> list[Case]:
+    """Return all cases of a seed."""
+    out = []
+    for strength in STRENGTHS:
+        for effect in (*CATALOGUE, *OUTSIDE):
+            kind = "one" if effect in CATALOGUE else "outside"
+            if f"{strength:g}" in sizes()[effect]:
+                out.append(_case(seed, f"{effect}-{strength:g}", kind, (effect,), strength))
+    for effect in CATALOGUE:  # a second draw at the strength that most goals are stated for
+        out.append(_case(seed, f"{effect}-3-again", "one", (effect,), 3.0))
+    pairs = [pair for pair in combinations(CATALOGUE, 2) if "3" in sizes()[pair[0]] and "3" in sizes()[pair[1]]]
+    for i in stream(seed, "pairs").choice(len(pairs), PAIRS, replace=False):
+        out.append(_case(seed, "-".join(pairs[i]), "two", pairs[i], 3.0))
+    out += [_case(seed, f"null-{i}", "null", (), 0.0) for i in range(NULLS)]
+    return out

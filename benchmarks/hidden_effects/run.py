@@ -1,0 +1,58 @@
+"""Diagnose the cases, each into a file of its own, so that a run that was stopped goes on where it stopped."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from joblib import Parallel, delayed
+
+from benchmarks.hidden_effects.cases import Case
+from benchmarks.hidden_effects.machine import record
+from flexarm_env import Arm, Recording, diagnose
+from flexarm_env.files import write_whole
+
+Method = Callable[[Arm, Sequence[Recording]], dict[str, Any]]
+ARM = "thesis-fem"
+
+
+def by_diagnosis(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
+    """Return what `flexarm diagnose --json` writes."""
+    return diagnose(arm, recordings, jobs=1).as_json()
+
+
+def _answer(case: Case, method: Method, folder: Path) -> dict[str, Any]:
+    path = folder / f"{case.name}.json"
+    if path.exists():
+        kept: dict[str, Any] = json.loads(path.read_text())
+        if kept["case"] == json.loads(json.dumps(case.as_json())):
+            return kept
+    began = time.process_time()
+    found = method(Arm.load(ARM), record(case))
+    answer = {"case": case.as_json(), "found": found, "cpu_seconds": round(time.process_time() - began, 1)}
+    write_whole(path, json.dumps(answer, indent=1) + "\n")
+    return answer
+
+
+def run(
+    cases: Sequence[Case], method: Method, folder: Path, jobs: int, say: Callable[[int, dict[str, Any]], None]
+) -> list[dict[str, Any]]:
+    """Return what a method answers to each case.
+
+    Args:
+        cases: to be diagnosed.
+        method: takes the arm and the recordings.
+        folder: for the answers; those that it holds already are taken from it.
+        jobs: processes; joblib's backends spread them over more machines.
+        say: called with the number of answers so far and the latest.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    answers = []
+    tasks = [delayed(_answer)(case, method, folder) for case in cases]
+    for answer in Parallel(n_jobs=jobs, return_as="generator")(tasks):
+        answers.append(answer)
+        say(len(answers), answer)
+    return answers

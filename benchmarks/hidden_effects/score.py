@@ -1,0 +1,136 @@
+"""The benchmark's table: what share of the answers is right, against the goals."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from benchmarks.hidden_effects.truth import covered
+
+Answer = dict[str, Any]
+SENSORS = (
+    "tach_filter",
+    "tach_ripple",
+    "strain_drift",
+    "strain_lag",
+    "pot_nonlinearity",
+    "sensor_offset",
+    "time_offset",
+    "crosstalk",
+    "gage_creep",
+)
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One line of the table: what, the goal in words, how many of how many, and whether that meets it."""
+
+    what: str
+    goal: str
+    value: float
+    count: int
+    met: bool
+    unit: str = "%"
+
+    @property
+    def text(self) -> str:
+        """The value with its unit and the number of cases."""
+        if self.unit == "%":
+            return f"{100.0 * self.value:.0f} % of {self.count}"
+        return f"{self.value:.3g}{' ' + self.unit if self.unit else ''} ({self.count})"
+
+
+def first(answer: Answer) -> str | None:
+    """Return the effect that a diagnosis names first, if any."""
+    effects: list[str] = answer["found"]["effects"]
+    return effects[0] if effects else None
+
+
+def is_right(answer: Answer) -> bool:
+    """Whether the first effect named is the hidden one."""
+    return first(answer) == answer["case"]["effects"][0]
+
+
+def is_in_class(answer: Answer) -> bool:
+    """Whether the hidden effect is among at most two that the diagnosis cannot tell apart."""
+    classes = answer["found"]["equivalent"]
+    return is_right(answer) or (bool(classes) and len(classes[0]) <= 2 and answer["case"]["effects"][0] in classes[0])
+
+
+def is_in_first_three(answer: Answer) -> bool:
+    """Whether the hidden effect is among the first three of the ranking."""
+    return answer["case"]["effects"][0] in [c["effect"] for c in answer["found"]["ranking"][:3]]
+
+
+def both_right(answer: Answer) -> bool:
+    """Whether exactly the hidden effects are named."""
+    return set(answer["found"]["effects"]) == set(answer["case"]["effects"])
+
+
+def right_side(answer: Answer) -> bool:
+    """Whether a sensor's fault is taken for one, and nothing else is."""
+    named = first(answer)
+    return named is not None and (named in SENSORS) == (answer["case"]["effects"][0] in SENSORS)
+
+
+def verdict_in(*verdicts: str) -> Callable[[Answer], bool]:
+    """Return whether an answer has one of some verdicts."""
+    return lambda answer: answer["found"]["verdict"] in verdicts
+
+
+def removed(answer: Answer) -> float:
+    """Return the share of the excess held-out error that the corrected arm removes."""
+    error = answer["found"]["error"]
+    before, after = (max(error[key] ** 2 - 1.0, 0.0) for key in ("refitted", "final"))
+    return 1.0 - after / before if before > 0.0 else 0.0
+
+
+def _share(what: str, goal: float, answers: Sequence[Answer], test: Callable[[Answer], bool], at_most: bool = False) -> Figure:
+    value = float(np.mean([test(a) for a in answers])) if answers else float("nan")
+    met = value <= goal if at_most else value >= goal
+    return Figure(what, f"{'≤' if at_most else '≥'} {100 * goal:.0f} %", value, len(answers), bool(met))
+
+
+def figures(answers: Iterable[Answer]) -> list[Figure]:
+    """Return the lines of the table."""
+    every = list(answers)
+
+    def of(kind: str, *strengths: float) -> list[Answer]:
+        return [a for a in every if a["case"]["kind"] == kind and (not strengths or a["case"]["strength"] in strengths)]
+
+    solved = [a for a in of("one", 3.0, 10.0) if is_right(a)]
+    held = [holds for a in every if a["case"]["kind"] != "outside" for _, holds in covered(a["case"], a["found"])]
+    coverage = float(np.mean(held)) if held else float("nan")
+    gone = float(np.median([removed(a) for a in solved])) if solved else float("nan")
+    final = float(np.median([a["found"]["error"]["final"] for a in solved])) if solved else float("nan")
+    seconds = float(np.median([a["cpu_seconds"] for a in every])) if every else float("nan")
+    return [
+        _share("right effect first, strength 3", 0.9, of("one", 3.0), is_right),
+        _share("right effect first, strength 10", 0.97, of("one", 10.0), is_right),
+        _share("right class of at most two, strength 3", 0.97, of("one", 3.0), is_in_class),
+        _share("right effect first, strength 1", 0.7, of("one", 1.0), is_right),
+        _share("in the first three, strength 1", 0.9, of("one", 1.0), is_in_first_three),
+        _share("two effects, both right, strength 3", 0.8, of("two", 3.0), both_right),
+        _share("false alarm on nulls", 0.02, of("null"), verdict_in("effects", "unknown"), at_most=True),
+        _share("outside the catalogue: flagged", 0.85, of("outside"), verdict_in("unknown")),
+        _share("outside the catalogue: mislabelled", 0.1, of("outside"), verdict_in("effects"), at_most=True),
+        _share("sensor against plant side", 0.97, [a for a in of("one", 3.0, 10.0) if first(a)], right_side),
+        Figure("90 % intervals that hold the truth", "87 to 93 %", coverage, len(held), 0.87 <= coverage <= 0.93),
+        Figure("excess held-out error removed, median", "≥ 90 %", gone, len(solved), gone >= 0.9),
+        Figure("final held-out error, median", "≤ 1.05", final, len(solved), final <= 1.05, unit=""),
+        Figure("time of one core for three recordings, median", "≤ 120 s", seconds, len(every), seconds <= 120.0, unit="s"),
+    ]
+
+
+def wrong(answers: Iterable[Answer]) -> list[tuple[str, str, int]]:
+    """Return what was hidden, what was named in its place, and how often, for single effects that were missed."""
+    counts: Counter[tuple[str, str]] = Counter()
+    for answer in answers:
+        if answer["case"]["kind"] == "one" and not is_right(answer):
+            found = answer["found"]
+            counts[answer["case"]["effects"][0], ", ".join(found["effects"]) or found["verdict"]] += 1
+    return [(hidden, named, n) for (hidden, named), n in counts.most_common()]

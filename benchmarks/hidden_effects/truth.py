@@ -1,0 +1,69 @@
+"""What a fitted value should be: the rig's settings in the words of arm files."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+GEAR = 1.5
+
+#: effect -> parameter -> the rig's settings in its units
+PARAMETERS: dict[str, dict[str, Callable[[dict[str, float]], float]]] = {
+    "stribeck": {"extra": lambda s: s["stribeck"], "falloff_speed": lambda s: s["vs"]},
+    "asymmetric_coulomb": {"torque": lambda s: s["asym"]},
+    "asymmetric_viscous": {"coefficient": lambda s: s["asymv"]},
+    "position_friction": {"amplitude": lambda s: s["posf"], "cycles": lambda s: s["posn"]},
+    "constant_torque": {"torque": lambda s: s["bias"]},
+    "cable_stiffness": {"stiffness": lambda s: s["cable"], "rest_angle": lambda s: s["cable0"]},
+    "cogging": {"amplitude": lambda s: GEAR * s["cog"], "cycles": lambda s: GEAR * s["cogn"]},
+    "backlash": {"gap": lambda s: s["gap"]},
+    "beam_damping": {"time": lambda s: s["beam_damp"]},
+    "air_drag": {"coefficient": lambda s: s["drag"]},
+    "root_compliance": {"compliance": lambda s: s["root"]},
+    "payload": {"mass": lambda s: s["payload"]},
+    "tip_inertia": {"inertia": lambda s: s["tip_inertia"]},
+    "current_lag": {"time": lambda s: s["lag"]},
+    "input_delay": {"delay": lambda s: s["delay"]},
+    "dead_zone": {"width": lambda s: s["dead"]},
+    "saturation": {"limit": lambda s: s["sat"]},
+    "rate_limit": {"rate": lambda s: s["rate"]},
+    "brush_drop": {"drop": lambda s: s["brush"]},
+    "tach_filter": {"time": lambda s: s["tachlag"]},
+    "tach_ripple": {"amplitude": lambda s: s["trip"]},
+    "strain_drift": {"rate": lambda s: s["sdrift"]},
+    "strain_lag": {"time": lambda s: s["slag"]},
+    "pot_nonlinearity": {"amplitude": lambda s: abs(s["potnl"]), "cycles": lambda s: s["potn"]},
+    "sensor_offset": {"strain_mid": lambda s: s["off_mid"]},
+    "time_offset": {"offset": lambda s: s["late"]},
+}
+
+#: constant of the diagnosis -> the rig's constant and its value in the model
+CONSTANTS = {
+    "torque_constant": ("kphi", 0.33),
+    "motor_inertia": ("jm", 0.00193),
+    "bending_stiffness": ("ei", 7.911324),
+    "mass_per_length": ("density", 0.42381),
+    "strain_mid_gain": ("ksg", 2.27),
+    "strain_base_gain": ("ksg", 2.27),
+}
+
+
+def parameters(effect: str, settings: dict[str, float]) -> dict[str, float]:
+    """Return the true parameters of an effect, those that have one name on both sides."""
+    return {key: value(settings) for key, value in PARAMETERS.get(effect, {}).items()}
+
+
+def covered(case: dict[str, Any], found: dict[str, Any]) -> Iterator[tuple[str, bool]]:
+    """Yield every value of a right diagnosis whose truth is known, and whether its interval holds it."""
+    for candidate in found["ranking"]:
+        if candidate["accepted"] and candidate["effect"] in case["effects"]:
+            for key, value in parameters(candidate["effect"], case["settings"]).items():
+                yield f"{candidate['effect']}.{key}", _holds(candidate["parameters"][key], value)
+    for name, (setting, nominal) in CONSTANTS.items():
+        if name in found["constants"]:
+            yield name, _holds(found["constants"][name], nominal * case["settings"].get(f"{setting}_x", 1.0))
+
+
+def _holds(interval: dict[str, float], value: float) -> bool:
+    return math.isfinite(value) and interval["low"] <= value <= interval["high"]
