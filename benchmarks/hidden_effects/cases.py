@@ -80,9 +80,9 @@ def _case(seed: int, name: str, kind: str, effects: tuple[str, ...], strength: f
     for effect in effects:
         settings |= settings_of(known[effect], sizes()[effect][f"{strength:g}"], draw)
     wrong = WRONG[draw.integers(len(WRONG))]
-    factors = {f"{name}_x": float(1.0 + draw.uniform(-wrong, wrong)) for name in CONSTANTS}
-    if wrong:
-        settings |= factors
+    for names in CONSTANTS if wrong else ():
+        factor = float(1.0 + draw.uniform(-wrong, wrong))
+        settings |= {f"{name}_x": factor for name in names}
     runs = EXPERIMENTS[draw.integers(len(EXPERIMENTS))]
     return Case(name, kind, effects, strength, settings, runs, int(draw.integers(2**31)))
 

@@ -79,5 +79,5 @@ OUTSIDE = {
     "gage_creep": Hidden("creep", 0.6),
 }
 
-#: The rig's constants that a model has wrong.
-CONSTANTS = ("kphi", "jm", "jh", "bm", "bs", "tmf", "tms", "taf", "tas", "ei", "density", "ksg")
+#: The rig's constants that a model has wrong, static and sliding friction of a body by one factor.
+CONSTANTS = (("kphi",), ("jm",), ("jh",), ("bm",), ("bs",), ("tmf", "tms"), ("taf", "tas"), ("ei",), ("density",), ("ksg",))
