@@ -1,0 +1,225 @@
+"""The thesis's own method: a fixed step, with friction decided at each (section 3.4, "a step size of 1e-9, using C code").
+
+It serves two ends. Row T19 measures how long that method takes and how far it is from the product's exact motion. And it
+runs the thesis's clamped model (eqs. 3.26 to 3.31), whose matrices are not those of any arm: its hub feels the beam's
+moment, but not the beam's inertia.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from flexarm_env.thesis.constants import LENGTH, MASS_PER_LENGTH, MODULUS, SECOND_MOMENT, TABLE
+
+Floats = NDArray[np.float64]
+
+STIFFNESS = MODULUS * SECOND_MOMENT  # EI [Nm²]
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """M q̈ + B q̇ + K q = [τ − T_f, 0, 0] with q = [hub angle, deflection, slope], arm side.
+
+    Attributes:
+        mass: (3, 3).
+        damping: (3, 3).
+        stiffness: (3, 3).
+        moment: (3,), M_o [Nm, motor side] per q.
+        strain: (3,), the gage at 0.55 m [V] per q.
+        coulomb: T_c [Nm].
+        static: T_s [Nm].
+    """
+
+    mass: Floats
+    damping: Floats
+    stiffness: Floats
+    moment: Floats
+    strain: Floats
+    coulomb: float
+    static: float
+
+    def frequencies(self) -> Floats:
+        """Natural frequencies that are not zero [Hz], rising."""
+        squares = np.linalg.eigvals(np.linalg.solve(self.mass, self.stiffness)).real
+        return np.sort(np.sqrt(squares[squares > 1e-3])) / (2.0 * np.pi)
+
+    def without_friction(self) -> Model:
+        """The model without dry friction."""
+        return Model(self.mass, self.damping, self.stiffness, self.moment, self.strain, 0.0, 0.0)
+
+
+def _rows() -> tuple[Floats, Floats]:
+    """M_o [Nm, motor side] and strain [V] per deflection and slope measured from the hub's line."""
+    L, EI = LENGTH, STIFFNESS
+    moment = EI / TABLE["N"] * np.array([6.0 / L**2, -2.0 / L])
+    x = 0.55
+    strain = GAGE * EI * np.array([6.0 / L**2 - 12.0 * x / L**3, -2.0 / L + 6.0 * x / L**2])
+    return moment, strain
+
+
+#: K_SG [V/Nm], thesis section 3.3.
+GAGE = 2.27
+
+
+def pinned(hub: float | None = None) -> Model:
+    """The pinned model, consistent (thesis eq. 3.9 with erratum 3 mended), on absolute coordinates.
+
+    Args:
+        hub: inertia of motor and hub [kg m²]; by default that of Table 2.1.
+    """
+    L, t = LENGTH, TABLE
+    hub = t["N"] ** 2 * t["J_m"] + t["J_hub"] if hub is None else hub
+    mass = MASS_PER_LENGTH * L / 420.0 * np.array([[4 * L * L, 13 * L, -3 * L * L], [13 * L, 156, -22 * L], [-3 * L * L, -22 * L, 4 * L * L]])
+    mass[0, 0] += hub
+    stiffness = STIFFNESS / L**3 * np.array([[4 * L * L, -6 * L, 2 * L * L], [-6 * L, 12, -6 * L], [2 * L * L, -6 * L, 4 * L * L]])
+    moment, strain = (np.array([-row @ [L, 1.0], *row]) for row in _rows())
+    return Model(mass, _damping(), stiffness, moment, strain, *_friction())
+
+
+def clamped(hub: float) -> Model:
+    """The thesis's clamped model with a hub that turns (eqs. 3.26 to 3.31), deflection and slope from the hub's line.
+
+    Args:
+        hub: N² J [kg m²]. The thesis's J is that of eq. 2.1, in which the arm counts a second time, since M_o is its
+            reaction already.
+    """
+    L, m = LENGTH, MASS_PER_LENGTH
+    mass = np.zeros((3, 3))
+    mass[0, 0] = hub
+    mass[1:, 0] = [7.0 * m * L**2 / 20.0, -m * L**3 / 20.0]
+    mass[1:, 1:] = m * L / 420.0 * np.array([[156.0, -22.0 * L], [-22.0 * L, 4.0 * L**2]])
+    moment, strain = (np.array([0.0, *row]) for row in _rows())
+    stiffness = np.zeros((3, 3))
+    stiffness[1:, 1:] = STIFFNESS / L**3 * np.array([[12.0, -6.0 * L], [-6.0 * L, 4.0 * L**2]])
+    stiffness[0] = -TABLE["N"] * moment
+    return Model(mass, _damping(), stiffness, moment, strain, *_friction())
+
+
+def _damping() -> Floats:
+    damping = np.zeros((3, 3))
+    damping[0, 0] = TABLE["N"] ** 2 * TABLE["b_m"] + TABLE["b_s"]
+    return damping
+
+
+def _friction() -> tuple[float, float]:
+    t = TABLE
+    return t["N"] * t["T_mf"] + t["T_af"], t["N"] * t["T_ms"] + t["T_as"]
+
+
+@dataclass(frozen=True)
+class Law:
+    """What drives the hub: a pulse of current, PD on a target, and K_mo M_o(t − t_d) by region of speed (thesis eq. 4.2).
+
+    Attributes:
+        pulse_start: [s].
+        pulse: [A], over 0.5 s.
+        target: [rad].
+        proportional: [A/rad].
+        derivative: [A s/rad].
+        high: K_mo at high speed.
+        low: K_mo at low speed.
+        low_speed: [rad/s], of the motor.
+        compensation: [A], along the motion at low speed.
+        delay: t_d [s].
+        limit: [A].
+    """
+
+    pulse_start: float = 0.0
+    pulse: float = 0.0
+    target: float = 0.0
+    proportional: float = 0.0
+    derivative: float = 0.0
+    high: float = 0.0
+    low: float = 0.0
+    low_speed: float = 0.03
+    compensation: float = 0.0
+    delay: float = 0.0
+    limit: float = np.inf
+
+
+def simulate(model: Model, law: Law, duration: float, step: float, every: float) -> Floats:
+    """March from rest at angle 0 by a fixed step.
+
+    Args:
+        model: whose motion it is.
+        law: of the current.
+        duration: [s].
+        step: [s].
+        every: from one sample to the next [s].
+
+    Returns:
+        (samples, 5): hub angle [rad], motor speed [rad/s], strain [V], current [A], whether the hub is stuck.
+    """
+    samples, stride = round(duration / every), round(every / step)
+    beam = np.zeros((3, 3))
+    beam[1:, 1:] = np.linalg.inv(model.mass[1:, 1:])
+    numbers = np.array(
+        [TABLE["N"], TABLE["kphi"], model.coulomb, model.static, law.pulse_start, law.pulse, law.target, law.proportional,
+         law.derivative, law.high, law.low, law.low_speed, law.compensation, law.limit]
+    )  # fmt: skip
+    past = np.zeros(round(law.delay / step) + 1)
+    out = np.zeros((samples, 5))
+    march(
+        np.linalg.inv(model.mass), beam, model.mass[0].copy(), model.damping, model.stiffness, model.moment, model.strain,
+        numbers, past, step, stride, out,
+    )  # fmt: skip
+    return out
+
+
+@njit(cache=True, error_model="numpy")
+def current(numbers, past, k, time, q, u, torque):  # type: ignore[no-untyped-def]
+    """Current [A] at a time (thesis eq. 4.2)."""
+    gears, kphi, start, size = numbers[0], numbers[1], numbers[4], numbers[5]
+    high, low, low_speed, extra, limit = numbers[9], numbers[10], numbers[11], numbers[12], numbers[13]
+    amps = size if start <= time < start + 0.5 else 0.0
+    speed = gears * u[0]
+    amps += numbers[7] * (numbers[6] - q[0]) - numbers[8] * speed
+    if high != 0.0 or low != 0.0 or extra != 0.0:
+        past[k % past.shape[0]] = torque
+        late = past[(k + 1) % past.shape[0]]
+        slow = abs(speed) < low_speed
+        amps += (low if slow else high) * late / kphi
+        if slow and speed != 0.0:
+            amps += extra if speed > 0.0 else -extra
+    return min(max(amps, -limit), limit)
+
+
+@njit(cache=True, error_model="numpy")
+def march(inverse, beam, hub_row, damping, stiffness, moment, strain, numbers, past, step, stride, out):  # type: ignore[no-untyped-def]
+    """Fill out (samples, 5) by a semi-implicit Euler step: speeds first, then angles with the new speeds."""
+    gears, kphi, coulomb, static = numbers[0], numbers[1], numbers[2], numbers[3]
+    q, u, a, force = np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)
+    stuck, side = True, 1.0
+    for k in range(out.shape[0] * stride):
+        torque = moment[0] * q[0] + moment[1] * q[1] + moment[2] * q[2]
+        amps = current(numbers, past, k, k * step, q, u, torque)
+        if k % stride == 0:
+            row = k // stride
+            out[row, 0], out[row, 1], out[row, 3], out[row, 4] = q[0], gears * u[0], amps, 1.0 if stuck else 0.0
+            out[row, 2] = strain[0] * q[0] + strain[1] * q[1] + strain[2] * q[2]
+        for i in range(3):
+            pull = stiffness[i, 0] * q[0] + stiffness[i, 1] * q[1] + stiffness[i, 2] * q[2]
+            force[i] = -pull - damping[i, 0] * u[0]
+        force[0] += gears * kphi * amps
+        if stuck:
+            a[1] = beam[1, 1] * force[1] + beam[1, 2] * force[2]
+            a[2] = beam[2, 1] * force[1] + beam[2, 2] * force[2]
+            hold = force[0] - hub_row[1] * a[1] - hub_row[2] * a[2]
+            if abs(hold) > static:
+                stuck, side = False, 1.0 if hold > 0.0 else -1.0
+        if stuck:
+            a[0] = 0.0
+        else:
+            force[0] -= side * coulomb
+            for i in range(3):
+                a[i] = inverse[i, 0] * force[0] + inverse[i, 1] * force[1] + inverse[i, 2] * force[2]
+        for i in range(3):
+            u[i] += step * a[i]
+        if not stuck and u[0] * side < 0.0:
+            u[0], stuck = 0.0, True
+        for i in range(3):
+            q[i] += step * u[i]
