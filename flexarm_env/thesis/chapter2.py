@@ -53,6 +53,12 @@ def flexible(rate: bool = False) -> Run:
     return run(arm, make_controller(name, arm, 0.005), target=square_wave(DURATION, 0.005), interval=0.005, noise=0)
 
 
+@functools.cache
+def flexible_quiet() -> Run:
+    """The flexible arm of one element, without noise."""
+    return _follow(arms.combined(), "pd")
+
+
 def _follow(arm: Arm, controller: str) -> Run:
     return run(arm, make_controller(controller, arm, INTERVAL), target=square_wave(DURATION))
 

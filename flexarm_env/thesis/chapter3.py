@@ -11,8 +11,9 @@ from flexarm_env.arm import Arm
 from flexarm_env.controllers import make_controller
 from flexarm_env.thesis import arms, printed
 from flexarm_env.thesis.constants import CLAMPED_DELAY, INERTIA_CHANGE, TABLE
-from flexarm_env.thesis.fixed_step import Law, Model, clamped, simulate
+from flexarm_env.thesis.fixed_step import Model, clamped, simulate
 from flexarm_env.thesis.frequency import Vibration, vibration
+from flexarm_env.thesis.law import Law
 from flexarm_env.thesis.runs import DURATION, INTERVAL, PULSE, Floats, Run, pulse, run
 
 #: Beginning of the pulse [s].

@@ -14,6 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from flexarm_env.thesis.constants import LENGTH, MASS_PER_LENGTH, MODULUS, SECOND_MOMENT, TABLE
+from flexarm_env.thesis.law import Law, current
 
 Floats = NDArray[np.float64]
 
@@ -110,37 +111,6 @@ def _friction() -> tuple[float, float]:
     return t["N"] * t["T_mf"] + t["T_af"], t["N"] * t["T_ms"] + t["T_as"]
 
 
-@dataclass(frozen=True)
-class Law:
-    """What drives the hub: a pulse of current, PD on a target, and K_mo M_o(t − t_d) by region of speed (thesis eq. 4.2).
-
-    Attributes:
-        pulse_start: [s].
-        pulse: [A], over 0.5 s.
-        target: [rad].
-        proportional: [A/rad].
-        derivative: [A s/rad].
-        high: K_mo at high speed.
-        low: K_mo at low speed.
-        low_speed: [rad/s], of the motor.
-        compensation: [A], along the motion at low speed.
-        delay: t_d [s].
-        limit: [A].
-    """
-
-    pulse_start: float = 0.0
-    pulse: float = 0.0
-    target: float = 0.0
-    proportional: float = 0.0
-    derivative: float = 0.0
-    high: float = 0.0
-    low: float = 0.0
-    low_speed: float = 0.03
-    compensation: float = 0.0
-    delay: float = 0.0
-    limit: float = np.inf
-
-
 def simulate(model: Model, law: Law, duration: float, step: float, every: float) -> Floats:
     """March from rest at angle 0 by a fixed step.
 
@@ -157,46 +127,25 @@ def simulate(model: Model, law: Law, duration: float, step: float, every: float)
     samples, stride = round(duration / every), round(every / step)
     beam = np.zeros((3, 3))
     beam[1:, 1:] = np.linalg.inv(model.mass[1:, 1:])
-    numbers = np.array(
-        [TABLE["N"], TABLE["kphi"], model.coulomb, model.static, law.pulse_start, law.pulse, law.target, law.proportional,
-         law.derivative, law.high, law.low, law.low_speed, law.compensation, law.limit]
-    )  # fmt: skip
-    past = np.zeros(round(law.delay / step) + 1)
+    numbers, past = law.packed(step)
+    body = np.array([TABLE["N"], TABLE["kphi"], model.coulomb, model.static])
     out = np.zeros((samples, 5))
     march(
         np.linalg.inv(model.mass), beam, model.mass[0].copy(), model.damping, model.stiffness, model.moment, model.strain,
-        numbers, past, step, stride, out,
+        body, numbers, past, step, stride, out,
     )  # fmt: skip
     return out
 
 
 @njit(cache=True, error_model="numpy")
-def current(numbers, past, k, time, q, u, torque):  # type: ignore[no-untyped-def]
-    """Current [A] at a time (thesis eq. 4.2)."""
-    gears, kphi, start, size = numbers[0], numbers[1], numbers[4], numbers[5]
-    high, low, low_speed, extra, limit = numbers[9], numbers[10], numbers[11], numbers[12], numbers[13]
-    amps = size if start <= time < start + 0.5 else 0.0
-    speed = gears * u[0]
-    amps += numbers[7] * (numbers[6] - q[0]) - numbers[8] * speed
-    if high != 0.0 or low != 0.0 or extra != 0.0:
-        past[k % past.shape[0]] = torque
-        late = past[(k + 1) % past.shape[0]]
-        slow = abs(speed) < low_speed
-        amps += (low if slow else high) * late / kphi
-        if slow and speed != 0.0:
-            amps += extra if speed > 0.0 else -extra
-    return min(max(amps, -limit), limit)
-
-
-@njit(cache=True, error_model="numpy")
-def march(inverse, beam, hub_row, damping, stiffness, moment, strain, numbers, past, step, stride, out):  # type: ignore[no-untyped-def]
+def march(inverse, beam, hub_row, damping, stiffness, moment, strain, body, numbers, past, step, stride, out):  # type: ignore[no-untyped-def]
     """Fill out (samples, 5) by a semi-implicit Euler step: speeds first, then angles with the new speeds."""
-    gears, kphi, coulomb, static = numbers[0], numbers[1], numbers[2], numbers[3]
+    gears, kphi, coulomb, static = body
     q, u, a, force = np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)
     stuck, side = True, 1.0
     for k in range(out.shape[0] * stride):
         torque = moment[0] * q[0] + moment[1] * q[1] + moment[2] * q[2]
-        amps = current(numbers, past, k, k * step, q, u, torque)
+        amps = current(numbers, past, k, k * step, q[0], gears * u[0], torque)
         if k % stride == 0:
             row = k // stride
             out[row, 0], out[row, 1], out[row, 3], out[row, 4] = q[0], gears * u[0], amps, 1.0 if stuck else 0.0

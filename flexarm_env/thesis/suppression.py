@@ -8,71 +8,111 @@ import numpy as np
 
 from flexarm_env.arm import Arm
 from flexarm_env.controllers import make_controller
-from flexarm_env.controllers.vibration import VibrationSuppression
-from flexarm_env.thesis import arms
-from flexarm_env.thesis.fixed_step import Law, pinned, simulate
-from flexarm_env.thesis.runs import DURATION, INTERVAL, PULSE, Floats, Run, pulse, run
+from flexarm_env.controllers.pd import DERIVATIVE, PROPORTIONAL
+from flexarm_env.thesis import arms, continuous
+from flexarm_env.thesis.constants import PINNED_DELAY, TABLE
+from flexarm_env.thesis.law import Law
+from flexarm_env.thesis.runs import DURATION, INTERVAL, PULSE, Floats, Run, run
 
-#: Control [s] where friction is compensated at low speed: the switching converges slowly with the interval.
-FINE = 1e-4
-#: The thesis's controllers act at each step; its method at this step [s] stands for that limit.
-LIMIT_STEP = 1e-6
 SLEW = np.deg2rad(100.0)
+LIMIT = 5.0  # [A]
+#: K_mo at high speed, at low speed, and whether friction is compensated at low speed, of Figs. 4.15 to 4.18.
+GAINS = {
+    "pd": (0.0, 0.0, False),
+    "vibration_dual": (-1.0, 1.0, True),
+    "vibration_low": (0.0, 1.0, True),
+    "vibration_high": (-1.0, 0.0, False),
+}
 
 
-def _after_pulse(arm: Arm, high: float, low: float, delay: float, compensation: bool, interval: float) -> Run:
-    """Eq. 4.1: 3 A for 0.5 s, and K_mo M_o(t − t_d)/kφ added to it; the arm's limit holds for the sum."""
-    controller = VibrationSuppression(
-        arms.unlimited(), interval, high_gain=high, low_gain=low, delay=delay, friction_compensation=compensation,
-        proportional=0.0, derivative=0.0,
-    )  # fmt: skip
-    return run(arm, controller, feed=pulse(0.0, interval=interval), interval=interval)
+def law(
+    high: float, low: float, compensation: bool = False, slews: bool = False, delay: float = 0.0, amps: float = LIMIT
+) -> Law:
+    """The law of eq. 4.1 or 4.2.
+
+    Args:
+        high: K_mo at high speed.
+        low: K_mo at low speed.
+        compensation: whether Coulomb friction is opposed at low speed.
+        slews: whether PD goes to 100°; otherwise the pulse is played.
+        delay: t_d [s].
+        amps: limit of the current [A].
+    """
+    extra = arms.combined().value("effects.coulomb.torque") / (TABLE["N"] * TABLE["kphi"]) if compensation else 0.0
+    drive = {"target": SLEW, "proportional": PROPORTIONAL, "derivative": DERIVATIVE} if slews else {"pulse": PULSE}
+    return Law(high=high, low=low, compensation=extra, delay=delay, limit=amps, **drive)
+
+
+def _arm(friction: bool, limited: bool) -> Arm:
+    arm = arms.combined() if friction else arms.pinned_only()
+    return arm if limited else arm.with_values({"drive.limit": 0.0})
 
 
 @functools.cache
 def delayed(limited: bool, friction: bool = True) -> Run:
     """K_mo = −1, t_d = 0.026 s on the pinned model (Figs. 4.4, 4.5)."""
-    arm = arms.combined() if friction else arms.pinned_only()
-    return _after_pulse(arm if limited else arm.with_values({"drive.limit": 0.0}), -1.0, -1.0, 0.026, False, INTERVAL)
+    control = law(-1.0, -1.0, delay=PINNED_DELAY, amps=LIMIT if limited else np.inf)
+    return continuous.run(_arm(friction, limited), control)
 
 
 @functools.cache
 def without_friction(gain: float) -> Run:
     """K_mo = gain, t_d = 0 on the pinned model without dry friction (Fig. 4.7)."""
-    return _after_pulse(arms.pinned_only(), gain, gain, 0.0, False, INTERVAL)
+    return continuous.run(arms.pinned_only(), law(gain, gain))
 
 
 @functools.cache
 def with_friction(high: float, low: float, compensation: bool = False, limited: bool = True) -> Run:
     """K_mo by region of speed, t_d = 0, with friction (Figs. 4.8 to 4.14)."""
-    arm = arms.combined() if limited else arms.unlimited()
-    return _after_pulse(arm, high, low, 0.0, compensation, FINE if low or compensation else INTERVAL)
+    return continuous.run(_arm(True, limited), law(high, low, compensation, amps=LIMIT if limited else np.inf))
 
 
 @functools.cache
-def slew(controller: str) -> Run:
-    """100° under one of the product's controllers (Figs. 4.15 to 4.19)."""
-    interval = FINE if controller in ("vibration_dual", "vibration_low") else INTERVAL
-    target = np.full(round(DURATION / interval), SLEW)
-    return run(arms.combined(), make_controller(controller, arms.combined(), interval), target=target, interval=interval)
+def slew(name: str) -> Run:
+    """100° under one of GAINS (Figs. 4.15 to 4.19)."""
+    return continuous.run(arms.combined(), law(*GAINS[name], slews=True))
 
 
 @functools.cache
-def stand_in(controller: str) -> Run:
+def practical() -> Run:
+    """100° under the product's controller of the practical choice, mid-beam strain × K for M_o, every millisecond."""
+    arm = arms.combined()
+    target = np.full(round(DURATION / INTERVAL), SLEW)
+    return run(arm, make_controller("vibration_practical", arm, INTERVAL), target=target)
+
+
+@functools.cache
+def stand_in(name: str) -> Run:
     """100° of the noisy stand-in for the rig at 200 Hz, one controller of the product (Figs. 4.20 to 4.22)."""
-    arm = arms.stand_in()
-    return run(
-        arm, make_controller(controller, arm, 0.005), target=np.full(round(DURATION / 0.005), SLEW), interval=0.005, noise=0
-    )
+    arm, target = arms.stand_in(), np.full(round(DURATION / 0.005), SLEW)
+    return run(arm, make_controller(name, arm, 0.005), target=target, interval=0.005, noise=0)
 
 
 @functools.cache
-def limit(high: float, low: float, compensation: bool, slews: bool) -> Floats:
-    """The same as with_friction or slew, by the thesis's own method with control at each step of 1 µs.
+def stand_in_delayed() -> Run:
+    """K_mo = −1, t_d = 0.026 s on the noisy stand-in, its mid-beam gage in place of M_o, 5 A (Fig. 4.6)."""
+    arm = arms.stand_in()
+    options = {"high_gain": -1.0, "low_gain": -1.0, "delay": PINNED_DELAY, "proportional": 0.0, "derivative": 0.0}
+    unlimited = arm.with_values({"drive.limit": 0.0})
+    controller = make_controller("vibration_practical", unlimited, 0.005, **options)
+    feed = PULSE * (np.arange(round(DURATION / 0.005)) * 0.005 < 0.5 - 1e-9)
+    return run(arm, controller, feed=feed, interval=0.005, noise=0)
 
-    Returns:
-        (samples, 5) as fixed_step.simulate, every millisecond.
+
+def swing(strain: Floats, start: float, stop: float, interval: float = INTERVAL) -> float:
+    """Strain from peak to peak between two times [V]."""
+    return float(np.ptp(strain[round(start / interval) : round(stop / interval)]))
+
+
+@functools.cache
+def printed_torque() -> Run:
+    """K_mo = −1, t_d = 0 without dry friction and with eq. 4.4 as printed, EI twice in its first term (Fig. 4.7, erratum 5).
+
+    N M_o = EI (6 EI v − 2 s) is the moment, times a gain, at that place x along the beam where the moment's parts of v and
+    s, 6 − 12 x and 6 x − 2, have the ratio of 6 EI and −2.
     """
-    amps = (arms.combined().value("effects.coulomb.torque") / (1.5 * 0.33)) if compensation else 0.0
-    drive = {"target": SLEW, "proportional": 2.5308, "derivative": 0.6625} if slews else {"pulse": PULSE}
-    return simulate(pinned(), Law(high=high, low=low, compensation=amps, limit=5.0, **drive), DURATION, LIMIT_STEP, INTERVAL)
+    stiffness = arms.combined().value("beam.bending_stiffness")
+    place = (6.0 - 6.0 * stiffness) / (12.0 - 18.0 * stiffness)
+    gain = -2.0 / (6.0 * place - 2.0)
+    arm = arms.pinned_only().with_values({"sensors.strain_base.position": place})
+    return continuous.run(arm, law(-gain, -gain))

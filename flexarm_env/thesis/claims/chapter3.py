@@ -150,7 +150,8 @@ def clamped_alone() -> Claim:
         ],
         "eq. 3.26 puts the J of eq. 2.1, with the arm in it, beside M_o, which is the arm's reaction already: the arm counts twice "
         f"(erratum 10). A quarter of that model's period is {0.25 / exact['double']:.3f} s, the thesis's t_d of {CLAMPED_DELAY} s. A "
-        "beam seen from a hub that turns is the pinned beam in other coordinates; the boundary condition is not what went wrong.",
+        "beam seen from a hub that turns is the pinned beam in other coordinates, so the boundary condition is not what went wrong; "
+        "what is left of the difference is that one element's EI y″(0) is not its reaction.",
         ("3.7",),
     )
 
