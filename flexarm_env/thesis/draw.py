@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -20,28 +21,45 @@ LOOK: dict[str, dict[str, Any]] = {
     THIRD: {"color": INK, "lw": 1.0, "ls": (0, (1, 1))},
     POINTS: {"color": INK, "lw": 0, "marker": "o", "ms": 4.5, "mfc": "white"},
 }
-WIDTH, TOP, HEIGHT = 7.5, 1.05, 1.55  # [inch]
-DPI = 110
+#: Sizes [inch]: width, height of a panel and of the room between two, margins left, right, below, above without legend,
+#: height of a row of the legend. Fixed, because a layout that measures its texts draws everything twice.
+WIDTH, PANEL, BETWEEN, BETWEEN_OWN = 7.5, 1.4, 0.12, 0.3
+LEFT, RIGHT, BELOW, ABOVE, ROW = 0.95, 0.15, 0.5, 0.42, 0.19
+#: Height of a panel that has the figure to itself [inch].
+ALONE = 2.8
+DPI = 100
+COLUMNS = 2
 
 
 def draw(sheet: Sheet) -> Figure:
     """Return the figure of a sheet."""
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(WIDTH, TOP + HEIGHT * len(sheet.panels)), layout="constrained")
         own = any(panel.window is not None for panel in sheet.panels)
-        all_axes = figure.subplots(len(sheet.panels), 1, sharex=not own, squeeze=False)[:, 0]
-        for axes, panel in zip(all_axes, sheet.panels, strict=True):
-            _panel(axes, panel)
-        _legend(figure, sheet)
-        all_axes[-1].set_xlabel(sheet.x)
+        figure, all_axes = _frame(sheet, own)
         for axes, panel in zip(all_axes, sheet.panels, strict=True):
             span = panel.window or sheet.span
+            _panel(axes, panel, span)
             if span is None:
                 axes.margins(x=0.01)
             else:
                 axes.set_xlim(*span)
-        figure.align_ylabels(all_axes)
+        _legend(figure, sheet)
+        all_axes[-1].set_xlabel(sheet.x)
     return figure
+
+
+def _frame(sheet: Sheet, own: bool) -> tuple[Figure, list[Axes]]:
+    """Figure and axes, from top to bottom."""
+    count, gap = len(sheet.panels), BETWEEN_OWN if own else BETWEEN
+    tall = PANEL if count > 1 else ALONE
+    labels = {curve.label for panel in sheet.panels for curve in panel.curves}
+    above = ABOVE + ROW * -(-len(labels) // COLUMNS)
+    height = above + BELOW + count * tall + (count - 1) * gap
+    figure = Figure(figsize=(WIDTH, height))
+    all_axes = figure.subplots(count, 1, sharex=not own, squeeze=False)[:, 0]
+    edges = {"left": LEFT / WIDTH, "right": 1.0 - RIGHT / WIDTH, "bottom": BELOW / height, "top": 1.0 - above / height}
+    figure.subplots_adjust(**edges, hspace=gap / tall)
+    return figure, list(all_axes)
 
 
 def save(figure: Figure, stem: Path) -> list[Path]:
@@ -60,17 +78,22 @@ def save(figure: Figure, stem: Path) -> list[Path]:
     return paths
 
 
-def _panel(axes: Axes, panel: Panel) -> None:
+def _panel(axes: Axes, panel: Panel, span: tuple[float, float] | None) -> None:
+    low, high = span or (-np.inf, np.inf)
     for curve in panel.curves:
-        axes.plot(curve.x, curve.y, label=curve.label, **LOOK[curve.role])
+        shown = (curve.x >= low) & (curve.x <= high)
+        axes.plot(curve.x[shown], curve.y[shown], label=curve.label, **LOOK[curve.role])
     for height, words in panel.lines:
         axes.axhline(height, color=INK, lw=0.7, ls=(0, (6, 3)))
-        axes.annotate(words, (1.0, height), (-2, 2), xycoords=("axes fraction", "data"), textcoords="offset points", ha="right", fontsize=7)
+        place = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "top", "fontsize": 7}
+        axes.annotate(words, (0.0, height), (3, -2), **place)
     if panel.compressed:
         axes.set_yscale("symlog", linthresh=1.0)
+        axes.set_yticks([-1e4, -1e2, -1.0, 1.0, 1e2, 1e4])
     if panel.span is not None:
         axes.set_ylim(*panel.span)
     axes.set_ylabel(panel.label)
+    axes.yaxis.set_label_coords(-0.6 / (WIDTH - LEFT - RIGHT), 0.5)
 
 
 def _legend(figure: Figure, sheet: Sheet) -> None:
@@ -79,5 +102,10 @@ def _legend(figure: Figure, sheet: Sheet) -> None:
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             shown.setdefault(label, handle)
-    figure.suptitle(f"Fig. {sheet.number}  {sheet.title}", x=0.01, ha="left", weight="bold", size=10)
-    figure.legend(shown.values(), shown.keys(), loc="outside upper left", ncols=min(len(shown), 3), fontsize=8)
+    height = figure.get_size_inches()[1]
+    figure.text(0.12 / WIDTH, 1.0 - 0.12 / height, f"Fig. {sheet.number}  {sheet.title}", weight="bold", size=10, va="top")
+    place = (LEFT / WIDTH, 1.0 - 0.3 / height)
+    figure.legend(
+        shown.values(), shown.keys(), loc="upper left", bbox_to_anchor=place, ncols=COLUMNS, fontsize=8, borderaxespad=0.0,
+        borderpad=0.0, labelspacing=0.25,
+    )  # fmt: skip

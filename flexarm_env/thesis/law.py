@@ -60,10 +60,11 @@ def current(numbers, past, k, time, angle, speed, torque):  # type: ignore[no-un
     start = numbers[_PULSE_START]
     amps = numbers[_PULSE] if start - 1e-9 <= time < start + PULSE_LENGTH - 1e-9 else 0.0
     amps += numbers[_P] * (numbers[_TARGET] - angle) - numbers[_D] * speed
-    past[k % past.shape[0]] = torque
-    late = past[(k + 1) % past.shape[0]]
     slow = abs(speed) < numbers[_LOW_SPEED]
-    amps += (numbers[_LOW] if slow else numbers[_HIGH]) * late / numbers[_KPHI]
+    if numbers[_HIGH] != 0.0 or numbers[_LOW] != 0.0:
+        past[k % past.shape[0]] = torque
+        late = past[(k + 1) % past.shape[0]]
+        amps += (numbers[_LOW] if slow else numbers[_HIGH]) * late / numbers[_KPHI]
     if slow and speed != 0.0:
         amps += numbers[_EXTRA] if speed > 0.0 else -numbers[_EXTRA]
     return min(max(amps, -numbers[_LIMIT]), numbers[_LIMIT])

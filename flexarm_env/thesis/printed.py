@@ -1,4 +1,4 @@
-"""What the thesis's misprints change, in numbers: printed and consistent side by side.
+"""The thesis's equations as printed, and what their misprints change beside the consistent ones.
 
 Nothing here is an option of the product. Where a misprint can be run at all, it is an arm with other constants: dividing the
 hub's row but not its column by N (erratum 3) makes the hub's inertia N J_m + J_hub/N in place of N² J_m + J_hub, its
@@ -7,14 +7,12 @@ damping N b_m + b_s/N, and the hub's coordinate the motor's angle.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from scipy.linalg import eigh
 
 from flexarm_env.arm import Arm
 from flexarm_env.thesis import fixed_step
-from flexarm_env.thesis.constants import EXPERIMENT_1, INERTIA_CHANGE, RESISTANCE, TABLE
+from flexarm_env.thesis.constants import EXPERIMENT_1, RESISTANCE, TABLE
 
 PI2 = 2.0 * np.pi
 
@@ -29,31 +27,6 @@ def arm(consistent: Arm) -> Arm:
     # its hub coordinate is the motor's angle: the arm's is that over N, and the motor's speed is the coordinate's
     values |= {"sensors.arm_angle.gain": 1.0 / N, "sensors.motor_speed.gain": 1.0 / N}
     return consistent.with_values(values)
-
-
-@dataclass(frozen=True)
-class Erratum:
-    """A misprint and its effect.
-
-    Attributes:
-        number: as in the table of docs/thesis.md.
-        where: equation or figure.
-        printed: as it stands.
-        mended: as it should.
-        effect: of what the numbers are, with unit.
-        as_printed: number.
-        as_mended: number.
-        figures: that it changes.
-    """
-
-    number: int
-    where: str
-    printed: str
-    mended: str
-    effect: str
-    as_printed: float
-    as_mended: float
-    figures: str = ""
 
 
 def beam_from_shapes() -> tuple[float, float]:
@@ -117,7 +90,3 @@ def _under_tip_force() -> tuple[float, float]:
 
 def _first(stiffness: np.ndarray, mass: np.ndarray) -> float:
     return float(np.sqrt(eigh(stiffness, mass, eigvals_only=True)[0]) / PI2)
-
-
-#: J_m less this, as for Fig. 3.6.
-LIGHTER = -INERTIA_CHANGE

@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from flexarm_env.thesis.runs import Floats, Run
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from flexarm_env.thesis.runs import Run
+
+Floats = NDArray[np.float64]
 
 #: Roles of curves, each with a look of its own in colour and in grey.
 MAIN, OTHER, THIRD, BEHIND = "main", "other", "third", "behind"

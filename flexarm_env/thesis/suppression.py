@@ -9,10 +9,11 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.controllers import make_controller
 from flexarm_env.controllers.pd import DERIVATIVE, PROPORTIONAL
+from flexarm_env.controllers.vibration import VibrationSuppression
 from flexarm_env.thesis import arms, continuous
 from flexarm_env.thesis.constants import PINNED_DELAY, TABLE
 from flexarm_env.thesis.law import Law
-from flexarm_env.thesis.runs import DURATION, INTERVAL, PULSE, Floats, Run, run
+from flexarm_env.thesis.runs import DURATION, INTERVAL, PULSE, Floats, Run, pulse, run
 
 SLEW = np.deg2rad(100.0)
 LIMIT = 5.0  # [A]
@@ -59,6 +60,15 @@ def delayed(limited: bool, friction: bool = True) -> Run:
 def without_friction(gain: float) -> Run:
     """K_mo = gain, t_d = 0 on the pinned model without dry friction (Fig. 4.7)."""
     return continuous.run(arms.pinned_only(), law(gain, gain))
+
+
+@functools.cache
+def sampled_without_friction() -> Run:
+    """The same, K_mo = −1, by the product's controller every 5 ms."""
+    arm, interval = arms.pinned_only(), 0.005
+    options = {"high_gain": -1.0, "low_gain": -1.0, "friction_compensation": False, "proportional": 0.0, "derivative": 0.0}
+    controller = VibrationSuppression(arm.with_values({"drive.limit": 0.0}), interval, **options)
+    return run(arm, controller, feed=pulse(0.0, interval=interval), interval=interval)
 
 
 @functools.cache

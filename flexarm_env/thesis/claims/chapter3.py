@@ -86,7 +86,7 @@ def falling_frequency() -> Claim:
 def motor_inertia() -> Claim:
     """T7."""
     found = {name: chapter3.moving(name).frequency for name in ("lighter", "coulomb", "heavier", "printed", "printed, lighter")}
-    as_printed = printed.first_pinned(printed.LIGHTER)[0]
+    as_printed = printed.first_pinned(-INERTIA_CHANGE)[0]
     share = 100.0 * INERTIA_CHANGE / TABLE["J_m"]
     return Claim(
         "T7",

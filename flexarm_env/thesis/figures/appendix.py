@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from flexarm_env.thesis import appendix, arms
-from flexarm_env.thesis.constants import EXPERIMENT_2, EXPERIMENT_3, TABLE
+from flexarm_env.thesis.constants import EXPERIMENT_2, EXPERIMENT_3, MOTOR_COULOMB, MOTOR_VISCOUS, TABLE
 from flexarm_env.thesis.runs import run
-from flexarm_env.thesis.sheet import BEHIND, MAIN, OTHER, POINTS, SIGNAL, Curve, Panel, Sheet
+from flexarm_env.thesis.sheet import BEHIND, MAIN, OTHER, POINTS, SIGNAL, THIRD, Curve, Panel, Sheet
 
 SPEED = "motor speed [rad/s]"
 
@@ -69,7 +69,10 @@ def run_downs() -> Sheet:
         shown = time < 0.9
         curves.append(Curve(time[shown], curve[shown], f"simulated, J = {TABLE['J_m']} kg m²", MAIN))
         early = np.array([0.0, 0.15])
-        curves.append(Curve(early, speed + slope * early, "measured initial slope, as printed", OTHER))
+        curves.append(Curve(early, speed + slope * early, "measured initial slope, as printed", THIRD))
+        inertia = appendix.inertia_from_stopping(float(speed), float(stop), MOTOR_VISCOUS, MOTOR_COULOMB)
+        time, curve = appendix.run_down(float(speed), inertia)
+        curves.append(Curve(time[shown], curve[shown], "simulated, J from its time to stop", OTHER))
         curves.append(Curve(np.array([0.0, stop]), np.array([speed, 0.0]), "measured start and stop, as printed", POINTS))
     return Sheet("A.3", "Experiment 3: run-down of the motor alone", [Panel("speed [rad/s]", curves)])
 

@@ -43,11 +43,10 @@ def jumps(number: str, rate: bool) -> Sheet:
     law = collision(True, rate)
     printed = collision(True, rate, printed=True)
     time = np.arange(len(law)) * INTERVAL
-    whole = Panel(SIGNAL["speed"], _speeds((slow, STAND_IN, BEHIND), (with_gap, "backlash, teeth give way", MAIN)))
-    without_curve = Curve(without.time, without.speed, "no backlash", OTHER)
-    collided = Curve(time, law[:, 1], "backlash, collision of eq. 2.19", THIRD)
+    whole = _speeds((with_gap, "rigid, backlash, teeth give way", MAIN), (without, "rigid, no backlash", OTHER))
+    collided = Curve(time, law[:, 1], "rigid, backlash, collision of eq. 2.19", THIRD)
     as_printed = Curve(time, printed[:, 1], "collision, parting by eq. 2.22 as printed", OTHER)
-    near = [_part(curve, ZOOM) for curve in (*whole.curves[1:], without_curve, collided)]
+    near = [_part(curve, ZOOM) for curve in (*whole, collided)]
     late = (3.0, 4.2)
     apart = [_part(curve, late) for curve in (as_printed, collided)]
     at = "rate of current limited to 50 A/s" if rate else "rate of current not limited"
@@ -55,7 +54,8 @@ def jumps(number: str, rate: bool) -> Sheet:
         number,
         f"Motor speed with and without backlash, {at}",
         [
-            Panel(whole.label, [*whole.curves, without_curve], window=(0.0, 10.0)),
+            Panel(SIGNAL["speed"], _speeds((slow, STAND_IN, BEHIND)), window=(0.0, 10.0)),
+            Panel(SIGNAL["speed"], whole, window=(0.0, 10.0)),
             Panel("after the step\n[rad/s]", near, window=ZOOM),
             Panel("gears part\n[rad/s]", apart, window=late),
         ],

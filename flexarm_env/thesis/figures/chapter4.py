@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from flexarm_env.thesis import chapter3, suppression
@@ -34,16 +36,20 @@ def clamped(number: str, delay: float) -> Sheet:
     double, once = chapter3.double_inertia(), chapter3.hub_inertia()
     runs = (
         (chapter3.clamped_control(double, 0.0), FREE, BEHIND),
-        (chapter3.clamped_control(once, -1.0, delay), "K_mo = −1, arm counted once", OTHER),
+        (chapter3.clamped_control(once, -1.0, delay), "K_mo = −1, arm counted once (diverges)", OTHER),
         (chapter3.clamped_control(double, -1.0, delay), "K_mo = −1, model as printed", MAIN),
     )
+    # with the arm counted once the strain leaves the page: drawn as far as it is of the others' size
+    size = 1.5 * float(np.max(np.abs(runs[2][0][:, 2])))
+    gone = int(np.argmax(np.abs(runs[1][0][:, 2]) > size))
+    ends = (None, gone, None)
     found = []
     for column, name in ((2, "strain"), (1, "speed"), (3, "command")):
-        curves = [Curve(np.arange(len(out)) * INTERVAL, out[:, column], label, role) for out, label, role in runs]
-        shown = np.concatenate([curves[0].y, curves[2].y])
-        low, high = float(shown.min()), float(shown.max())
-        edge = 0.15 * (high - low)
-        found.append(Panel(SIGNAL[name], curves, (low - edge, high + edge)))
+        curves = [
+            Curve((np.arange(len(out)) * INTERVAL)[:end], out[:end, column], label, role)
+            for (out, label, role), end in zip(runs, ends, strict=True)
+        ]
+        found.append(Panel(SIGNAL[name], curves))
     return Sheet(number, f"Clamped model without friction, K_mo = −1, t_d = {delay:g} s", found, span=(0.0, 4.0))
 
 
@@ -126,11 +132,12 @@ SLEWS = {
 
 def slews() -> list[Sheet]:
     """Figs. 4.15 to 4.18."""
-    return [_slew(number, slew(name), words) for number, (name, words) in SLEWS.items()]
+    alone = (slew("pd"), SLEWS["4.15"][1], BEHIND)
+    return [_slew(number, slew(name), words, () if name == "pd" else (alone,)) for number, (name, words) in SLEWS.items()]
 
 
-def _slew(number: str, made: Run, words: str) -> Sheet:
-    angle, *rest = panels([(made, words, MAIN)], "angle", "speed", "strain", "command")
+def _slew(number: str, made: Run, words: str, behind: Sequence[tuple[Run, str, str]] = ()) -> Sheet:
+    angle, *rest = panels([*behind, (made, words, MAIN)], "angle", "speed", "strain", "command")
     target = Curve(made.time, np.rad2deg(made.target), "set-point", THIRD)
     return Sheet(number, f"100°: {words}", [Panel(angle.label, [*angle.curves, target]), *rest])
 
@@ -157,6 +164,6 @@ def experiments() -> list[Sheet]:
     both = [(alone, "PD alone", BEHIND), (practical, "and suppression at high speed, gage × 1.18 A/V", MAIN)]
     strain = panels(both, "strain")[0]
     note = "Of the rig in the thesis; here of the finer model that stands in for it."
-    sheets = [_slew("4.20", alone, "PD alone, on the stand-in"), _slew("4.21", practical, "practical choice, on the stand-in")]
+    sheets = [_slew("4.20", alone, "PD alone, on the stand-in"), _slew("4.21", practical, "practical choice, on the stand-in", both[:1])]
     last = Sheet("4.22", "Strain under both, on the stand-in", [strain, Panel(strain.label, strain.curves, (-0.3, 0.3), window=(1.5, 5.0))])
     return [Sheet(s.number, s.title, s.panels, s.x, s.span, note) for s in (*sheets, last)]
