@@ -27,7 +27,7 @@ LAYERS = (
     {"arm", "arm_file", "plant", "effects", "sensors", "linear"},
     {"identify", "controllers", "tasks", "render", "env"},
     {"vector_env", "sb3", "pictures", "registration"},
-    {"lab", "cli", "demo", "__main__"},
+    {"lab", "cli", "demo", "thesis", "__main__"},
     {"agents", "benchmarks"},
 )
 RANK = {name: rank for rank, layer in enumerate(LAYERS) for name in layer}

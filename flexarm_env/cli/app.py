@@ -194,6 +194,18 @@ def demo(
         raise typer.Exit(1)
 
 
+@app.command()
+def thesis(
+    output: Annotated[Path, typer.Option(metavar="FOLDER", help="Where page, figures and numbers go.")] = Path("results/thesis"),
+    json: Json = None,
+) -> None:
+    """Check the claims of the thesis that the model comes from, and draw its figures again."""
+    _check(json, pictures=True)
+    from flexarm_env.thesis.reproduce import reproduce
+
+    reproduce(output, json)
+
+
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
 def bench(context: typer.Context) -> None:
     """Measure speed and accuracy (in a source tree)."""
