@@ -10,11 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from flexarm_env.thesis.constants import LENGTH, MASS_PER_LENGTH, MODULUS, SECOND_MOMENT, TABLE
-from flexarm_env.thesis.law import Law, current
+from flexarm_env.thesis.kernels import march
+from flexarm_env.thesis.law import Law
 
 Floats = NDArray[np.float64]
 
@@ -135,40 +135,3 @@ def simulate(model: Model, law: Law, duration: float, step: float, every: float)
         body, numbers, past, step, stride, out,
     )  # fmt: skip
     return out
-
-
-@njit(cache=True, error_model="numpy")
-def march(inverse, beam, hub_row, damping, stiffness, moment, strain, body, numbers, past, step, stride, out):  # type: ignore[no-untyped-def]
-    """Fill out (samples, 5) by a semi-implicit Euler step: speeds first, then angles with the new speeds."""
-    gears, kphi, coulomb, static = body
-    q, u, a, force = np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)
-    stuck, side = True, 1.0
-    for k in range(out.shape[0] * stride):
-        torque = moment[0] * q[0] + moment[1] * q[1] + moment[2] * q[2]
-        amps = current(numbers, past, k, k * step, q[0], gears * u[0], torque)
-        if k % stride == 0:
-            row = k // stride
-            out[row, 0], out[row, 1], out[row, 3], out[row, 4] = q[0], gears * u[0], amps, 1.0 if stuck else 0.0
-            out[row, 2] = strain[0] * q[0] + strain[1] * q[1] + strain[2] * q[2]
-        for i in range(3):
-            pull = stiffness[i, 0] * q[0] + stiffness[i, 1] * q[1] + stiffness[i, 2] * q[2]
-            force[i] = -pull - damping[i, 0] * u[0]
-        force[0] += gears * kphi * amps
-        if stuck:
-            a[1] = beam[1, 1] * force[1] + beam[1, 2] * force[2]
-            a[2] = beam[2, 1] * force[1] + beam[2, 2] * force[2]
-            hold = force[0] - hub_row[1] * a[1] - hub_row[2] * a[2]
-            if abs(hold) > static:
-                stuck, side = False, 1.0 if hold > 0.0 else -1.0
-        if stuck:
-            a[0] = 0.0
-        else:
-            force[0] -= side * coulomb
-            for i in range(3):
-                a[i] = inverse[i, 0] * force[0] + inverse[i, 1] * force[1] + inverse[i, 2] * force[2]
-        for i in range(3):
-            u[i] += step * a[i]
-        if not stuck and u[0] * side < 0.0:
-            u[0], stuck = 0.0, True
-        for i in range(3):
-            q[i] += step * u[i]

@@ -11,15 +11,19 @@ from concurrent.futures import Future, ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from flexarm_env import __version__
 from flexarm_env.cli import outputs, tables
 from flexarm_env.cli.progress import Progress, progress
 from flexarm_env.errors import InputError
 from flexarm_env.files import write_whole
+from flexarm_env.thesis import arms
 from flexarm_env.thesis.claims import ROWS, Claim
 from flexarm_env.thesis.errata import Erratum, errata
 from flexarm_env.thesis.figures import CHAPTERS
 from flexarm_env.thesis.page import MARKS, page, summary
+from flexarm_env.thesis.runs import INTERVAL
 from flexarm_env.thesis.sheet import Sheet
 
 PAGE, NUMBERS = "index.html", "thesis.json"
@@ -60,6 +64,11 @@ def _work(output: Path, move: Progress | None) -> tuple[list[Claim], list[Erratu
     began = time.monotonic()
     pool = _pool()
     try:
+        # the first time both compile, the plant here and the loops there
+        ready = pool.submit(_compile_loops)
+        tell(0, "compiling")
+        arms.combined().plant(INTERVAL)
+        ready.result()
         drawn: list[Future[None]] = []
         sheets: dict[str, list[Sheet]] = {}
         for k, (chapter, build) in enumerate(CHAPTERS.items()):
@@ -88,6 +97,16 @@ def _pool() -> ProcessPoolExecutor:
 def _ignore_interrupt() -> None:
     """Leave Ctrl-C to the process that waits for this one."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _compile_loops() -> None:
+    """Have numba keep the loops beside the plant."""
+    from flexarm_env.thesis import fixed_step, impact, kernels
+    from flexarm_env.thesis.law import Law
+
+    kernels.player()
+    fixed_step.simulate(fixed_step.pinned(), Law(), 1e-5, 1e-5, 1e-5)
+    impact.follow(np.zeros(1), impact.STEP)
 
 
 def _draw(sheet: Sheet, output: Path) -> None:
