@@ -20,7 +20,7 @@ from flexarm_env.plant import layout
 Floats = NDArray[np.float64]
 
 EXPERIMENTS = ("pulse", "square", "sweep")
-#: Thesis section 2.6 [A/rad, A s/rad], on the arm's angle and the motor's speed.
+#: Thesis section 2.3 [A/rad, A s/rad], on the arm's angle and the motor's speed.
 PROPORTIONAL, DERIVATIVE = 2.5308, 0.6625
 #: Limit [A] and gear ratio of the drive for which these gains, the pulses and the tones are meant; others scale them.
 USUAL_LIMIT, USUAL_GEAR_RATIO = 5.0, 1.5

@@ -23,7 +23,7 @@ from flexarm_env.thesis.constants import (
     WHOLE_COULOMB,
     WHOLE_VISCOUS,
 )
-from flexarm_env.thesis.runs import Floats, Run, run, square_wave
+from flexarm_env.thesis.runs import Floats, Run, clock, run, square_wave
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +178,7 @@ def static_torque(rate: float = 0.05, threshold: float = 0.0, noise: float = 0.0
         noise: of the tachometer [rad/s].
     """
     arm, interval = arms.combined(), 0.005
-    feed = rate * interval * np.arange(round(1.0 / rate / interval))
+    feed = rate * clock(round(1.0 / rate / interval), interval)
     made = run(arm, feed=feed, interval=interval)
     shown = made.speed + noise * np.random.default_rng(0).standard_normal(len(made.speed))
     return float(TABLE["kphi"] * made.command[np.flatnonzero(np.abs(shown) > threshold)[0]])

@@ -10,7 +10,7 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.controllers import make_controller
 from flexarm_env.thesis import arms, printed
-from flexarm_env.thesis.constants import CLAMPED_DELAY, INERTIA_CHANGE, TABLE
+from flexarm_env.thesis.constants import INERTIA_CHANGE, TABLE
 from flexarm_env.thesis.fixed_step import Model, clamped, simulate
 from flexarm_env.thesis.frequency import Vibration, vibration
 from flexarm_env.thesis.law import Law
@@ -19,7 +19,7 @@ from flexarm_env.thesis.runs import DURATION, INTERVAL, PULSE, Floats, Run, puls
 #: Beginning of the pulse [s].
 START = 0.5
 #: Between these times [s] every model's hub moves on without a stop after the pulse.
-MOVING = (1.02, 2.0)
+MOVING = (1.08, 2.0)
 #: Step [s] of the clamped model: its numbers change by less than 1e-4 with a tenth of it.
 CLAMPED_STEP = 1e-5
 
@@ -108,7 +108,3 @@ def clamped_control(inertia: float, gain: float, delay: float = 0.0) -> Floats:
 
 def _plain(inertia: float) -> Model:
     return clamped(inertia).without_friction()
-
-
-#: The thesis's t_d for it [s].
-DELAY = CLAMPED_DELAY

@@ -15,7 +15,7 @@ from flexarm_env.plant import layout
 from flexarm_env.thesis.constants import TABLE
 from flexarm_env.thesis.kernels import player
 from flexarm_env.thesis.law import Law
-from flexarm_env.thesis.runs import DURATION, INTERVAL, RUN_AWAY, Run
+from flexarm_env.thesis.runs import DURATION, INTERVAL, RUN_AWAY, Run, clock
 
 STEP = 1e-5  # [s]
 
@@ -46,5 +46,4 @@ def run(arm: Arm, law: Law, duration: float = DURATION, step: float = STEP) -> R
     )  # fmt: skip
     out = out[:count]
     signals = {signal: out[:, i].copy() for i, signal in enumerate(arm.signals)}
-    time = np.arange(count) * stride * step
-    return Run(time, out[:, -2].copy(), signals, out[:, -1] > 0.0, np.full(count, law.target))
+    return Run(clock(count, stride * step), out[:, -2].copy(), signals, out[:, -1] > 0.0, np.full(count, law.target))

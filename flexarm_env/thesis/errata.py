@@ -11,7 +11,6 @@ import numpy as np
 from flexarm_env.controllers import make_controller
 from flexarm_env.thesis import arms, chapter2, chapter3, printed, suppression
 from flexarm_env.thesis.constants import INERTIA_CHANGE, TABLE
-from flexarm_env.thesis.figures.chapter3 import printed_gage
 from flexarm_env.thesis.fixed_step import clamped
 from flexarm_env.thesis.runs import INTERVAL, run, square_wave
 from flexarm_env.thesis.suppression import swing
@@ -74,7 +73,7 @@ def _matrices() -> list[Erratum]:
 
 def _beam_torque() -> list[Erratum]:
     made, moment, torque = chapter3.after_pulse("combined"), printed.moment_under_tip_force(), printed.torque_under_tip_force()
-    gage = [float(np.max(np.abs(values))) for values in (printed_gage(made), made.strain)]
+    gage = [float(np.max(np.abs(values))) for values in (printed.gage(made), made.strain)]
     wrong, right = suppression.printed_torque(), suppression.without_friction(-1.0)
     left = [swing(found.strain, 3.0, 4.0) for found in (wrong, right)]
     says, should = "EI (0.6 v + 1.3 s)", "EI (−0.6 v + 1.3 s)"
@@ -128,7 +127,9 @@ def _captions() -> list[Erratum]:
     for figure, compensation in (("4.12", False), ("4.13", True)):
         wrong, right = (swing(suppression.with_friction(0.0, gain, compensation).strain, 4.0, 5.0) for gain in (-1.0, 1.0))
         effect = "strain in the fifth second, peak to peak [V]"
-        found.append(Erratum("8", f"caption of Fig. {figure}", "K_mo = −1", "+1, as in the text", effect, wrong, right, (figure,)))
+        found.append(
+            Erratum("8", f"caption of Fig. {figure}", "K_mo = −1", "+1, as in the text", effect, wrong, right, (figure,))
+        )
     return found
 
 

@@ -74,9 +74,16 @@ def pinned(hub: float | None = None) -> Model:
     """
     L, t = LENGTH, TABLE
     hub = t["N"] ** 2 * t["J_m"] + t["J_hub"] if hub is None else hub
-    mass = MASS_PER_LENGTH * L / 420.0 * np.array([[4 * L * L, 13 * L, -3 * L * L], [13 * L, 156, -22 * L], [-3 * L * L, -22 * L, 4 * L * L]])
+    mass = (
+        MASS_PER_LENGTH
+        * L
+        / 420.0
+        * np.array([[4 * L * L, 13 * L, -3 * L * L], [13 * L, 156, -22 * L], [-3 * L * L, -22 * L, 4 * L * L]])
+    )
     mass[0, 0] += hub
-    stiffness = STIFFNESS / L**3 * np.array([[4 * L * L, -6 * L, 2 * L * L], [-6 * L, 12, -6 * L], [2 * L * L, -6 * L, 4 * L * L]])
+    stiffness = (
+        STIFFNESS / L**3 * np.array([[4 * L * L, -6 * L, 2 * L * L], [-6 * L, 12, -6 * L], [2 * L * L, -6 * L, 4 * L * L]])
+    )
     moment, strain = (np.array([-row @ [L, 1.0], *row]) for row in _rows())
     return Model(mass, _damping(), stiffness, moment, strain, *_friction())
 

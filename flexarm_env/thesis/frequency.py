@@ -85,7 +85,9 @@ def _poles(values: Floats) -> NDArray[np.complex128]:
     return np.asarray(found[(size > 1e-3) & (size ** len(values) < LARGEST_GROWTH)], dtype=complex)
 
 
-def over_time(time: Floats, signal: Floats, window: float, every: float, band: tuple[float, float] = BAND) -> tuple[Floats, Floats]:
+def over_time(
+    time: Floats, signal: Floats, window: float, every: float, band: tuple[float, float] = BAND
+) -> tuple[Floats, Floats]:
     """Return the middles of windows [s] and the frequency in each [Hz], nan where nothing vibrates."""
     starts = np.arange(time[0], time[-1] - window, every)
     found = np.array([vibration(time, signal, t, t + window, band).frequency for t in starts])

@@ -120,7 +120,8 @@ def march(numbers, target, step, stride, out):  # type: ignore[no-untyped-def]
         motor_angle += step * motor_speed
         arm_angle += step * arm_speed
         play = motor_angle - gears * arm_angle
-        if side == 0.0 and (play >= 0.0 and motor_speed > gears * arm_speed or play <= -gap and motor_speed < gears * arm_speed):
+        ahead, behind = motor_speed > gears * arm_speed, motor_speed < gears * arm_speed
+        if side == 0.0 and ((play >= 0.0 and ahead) or (play <= -gap and behind)):
             side = 1.0 if play >= 0.0 else -1.0
             motor_angle = gears * arm_angle - (0.0 if side > 0.0 else gap)
             motor_speed = (motor * motor_speed + arm * arm_speed / gears) / inertia

@@ -11,6 +11,7 @@ from flexarm_env.thesis.constants import TABLE
 
 Floats = NDArray[np.float64]
 
+
 @dataclass(frozen=True)
 class Law:
     """A pulse of current, PD on a target, and K_mo M_o(t − t_d) by region of speed (thesis eq. 4.2).

@@ -12,7 +12,8 @@ from scipy.linalg import eigh
 
 from flexarm_env.arm import Arm
 from flexarm_env.thesis import fixed_step
-from flexarm_env.thesis.constants import EXPERIMENT_1, RESISTANCE, TABLE
+from flexarm_env.thesis.constants import EXPERIMENT_1, LENGTH, MASS_PER_LENGTH, RESISTANCE, TABLE
+from flexarm_env.thesis.runs import Floats, Run
 
 PI2 = 2.0 * np.pi
 
@@ -33,7 +34,7 @@ def beam_from_shapes() -> tuple[float, float]:
     """Stuck first frequency [Hz] with k_ij of φ_i φ_j as printed (eqs. 3.8, 3.22), and with their second derivatives."""
     model = fixed_step.pinned()
     mass = model.mass[1:, 1:]
-    shapes = fixed_step.STIFFNESS * mass / fixed_step.MASS_PER_LENGTH
+    shapes = fixed_step.STIFFNESS * mass / MASS_PER_LENGTH
     return _first(shapes, mass), _first(model.stiffness[1:, 1:], mass)
 
 
@@ -70,9 +71,18 @@ def torque_under_tip_force() -> tuple[float, float]:
     return 6.0 * EI / N * EI * v - 2.0 / N * EI * s, EI / N * (6.0 * v - 2.0 * s)
 
 
+def gage(made: Run) -> Floats:
+    """The second gage by section 3.3 as printed, EI(0.6 v + 1.3 s) [V], from the two gages of a run (erratum 4)."""
+    per_volt = 1.0 / (fixed_step.GAGE * fixed_step.STIFFNESS)
+    root, middle = made.signals["strain_base"] * per_volt, made.strain * per_volt
+    # root = 6 v − 2 s, middle = −0.6 v + 1.3 s
+    v, s = np.linalg.solve(np.array([[6.0, -2.0], [-0.6, 1.3]]), np.vstack([root, middle]))
+    return np.asarray(fixed_step.GAGE * fixed_step.STIFFNESS * (0.6 * v + 1.3 * s))
+
+
 def rigid_inertia() -> tuple[float, float]:
     """J_a [kg m²] as printed and from the beam's mass (erratum 7)."""
-    return TABLE["J_a"], fixed_step.MASS_PER_LENGTH * fixed_step.LENGTH**3 / 3.0 + TABLE["J_hub"]
+    return TABLE["J_a"], MASS_PER_LENGTH * LENGTH**3 / 3.0 + TABLE["J_hub"]
 
 
 def mean_motor_constant() -> tuple[float, float]:
@@ -84,7 +94,7 @@ def mean_motor_constant() -> tuple[float, float]:
 
 def _under_tip_force() -> tuple[float, float]:
     """Tip deflection [m] and slope [rad] of the clamped beam under 1 N."""
-    L, EI = fixed_step.LENGTH, fixed_step.STIFFNESS
+    L, EI = LENGTH, fixed_step.STIFFNESS
     return L**3 / (3.0 * EI), L**2 / (2.0 * EI)
 
 

@@ -129,4 +129,9 @@ def _say(output: Path, claims: Sequence[Claim], found: Sequence[Erratum], json: 
     out = tables.console(to_stderr=json == outputs.STDOUT)
     rows = [[claim.key, claim.words, f"{MARKS[claim.verdict]} {claim.verdict}"] for claim in claims]
     tables.show(out, tables.text_table("Claims of the thesis", ["", "the thesis says", "verdict"], rows))
-    out.print(Text(f"{summary(claims)} {len(found)} effects of misprints. In {output}: {PAGE}, {NUMBERS}, and the figures as SVG and PNG."))
+    out.print(
+        Text(
+            f"{summary(claims)} {len(found)} effects of misprints. In {output}: {PAGE}, {NUMBERS}, and the figures as SVG "
+            "and PNG."
+        )
+    )

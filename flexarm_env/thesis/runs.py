@@ -72,15 +72,20 @@ class Run:
         return float(np.std(self.strain[self.between(start, stop)]))
 
 
+def clock(count: int, interval: float = INTERVAL) -> Floats:
+    """Times of samples (count,) [s]."""
+    return np.asarray(np.arange(count) * interval, dtype=np.float64)
+
+
 def pulse(start: float, duration: float = DURATION, interval: float = INTERVAL) -> Floats:
     """Current (samples,) [A] of 3 A over 0.5 s from `start` [s] on."""
-    time = np.arange(round(duration / interval)) * interval
-    return PULSE * ((time >= start - 1e-9) & (time < start + 0.5 - 1e-9))
+    time = clock(round(duration / interval), interval)
+    return np.where((time >= start - 1e-9) & (time < start + 0.5 - 1e-9), PULSE, 0.0)
 
 
 def square_wave(duration: float, interval: float = INTERVAL) -> Floats:
     """Target (samples,) [rad] of ±50° at 0.2 Hz (thesis section 2.3)."""
-    half_periods = np.floor(np.arange(round(duration / interval)) * interval / 2.5 + 1e-9)
+    half_periods = np.floor(clock(round(duration / interval), interval) / 2.5 + 1e-9)
     return np.deg2rad(50.0) * np.where(half_periods % 2 == 0, 1.0, -1.0)
 
 
@@ -130,7 +135,7 @@ def run(
             truth, command, stuck, target = truth[:k], command[:k], stuck[:k], target[:k]
             break
     signals = {signal: truth[:, i] for i, signal in enumerate(arm.signals)}
-    return Run(np.arange(len(truth)) * interval, command, signals, stuck, target)
+    return Run(clock(len(truth), interval), command, signals, stuck, target)
 
 
 #: Motor speed [rad/s] at which a run that diverges is broken off: a hundred times the motor's largest.

@@ -26,9 +26,7 @@ GAINS = {
 }
 
 
-def law(
-    high: float, low: float, compensation: bool = False, slews: bool = False, delay: float = 0.0, amps: float = LIMIT
-) -> Law:
+def law(high: float, low: float, compensation: bool = False, slews: bool = False, delay: float = 0.0, amps: float = LIMIT) -> Law:
     """The law of eq. 4.1 or 4.2.
 
     Args:
@@ -66,8 +64,10 @@ def without_friction(gain: float) -> Run:
 def sampled_without_friction() -> Run:
     """The same, K_mo = −1, by the product's controller every 5 ms."""
     arm, interval = arms.pinned_only(), 0.005
-    options = {"high_gain": -1.0, "low_gain": -1.0, "friction_compensation": False, "proportional": 0.0, "derivative": 0.0}
-    controller = VibrationSuppression(arm.with_values({"drive.limit": 0.0}), interval, **options)
+    controller = VibrationSuppression(
+        arm.with_values({"drive.limit": 0.0}), interval, high_gain=-1.0, low_gain=-1.0, friction_compensation=False,
+        proportional=0.0, derivative=0.0,
+    )  # fmt: skip
     return run(arm, controller, feed=pulse(0.0, interval=interval), interval=interval)
 
 
@@ -105,7 +105,7 @@ def stand_in_delayed() -> Run:
     options = {"high_gain": -1.0, "low_gain": -1.0, "delay": PINNED_DELAY, "proportional": 0.0, "derivative": 0.0}
     unlimited = arm.with_values({"drive.limit": 0.0})
     controller = make_controller("vibration_practical", unlimited, 0.005, **options)
-    feed = PULSE * (np.arange(round(DURATION / 0.005)) * 0.005 < 0.5 - 1e-9)
+    feed = pulse(0.0, interval=0.005)
     return run(arm, controller, feed=feed, interval=0.005, noise=0)
 
 

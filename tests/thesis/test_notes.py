@@ -120,7 +120,7 @@ def test_frequencies_of_the_continuous_beam():
 def test_errata_have_the_effects_of_the_notes():
     assert printed.first_pinned() == pytest.approx((9.738, 8.964), abs=5e-4)
     assert printed.first_pinned(-0.0003)[0] == pytest.approx(9.955, abs=5e-4)
-    assert 100 * 0.0003 / 0.00193 == pytest.approx(15.5, abs=0.05)
+    assert pytest.approx(15.5, abs=0.05) == 100 * 0.0003 / 0.00193
     assert printed.moment_under_tip_force() == pytest.approx((0.85, 0.45), abs=1e-9)
     # (EI/N)(6 v − 2 s) under 1 N is L/N; EI once more in the first term makes 2 EI/N − L/N of it
     assert printed.torque_under_tip_force() == pytest.approx(((2 * EI - 1) / 1.5, 1 / 1.5), rel=1e-9)

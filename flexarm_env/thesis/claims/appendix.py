@@ -6,8 +6,15 @@ import numpy as np
 
 from flexarm_env.thesis import appendix
 from flexarm_env.thesis.claims.claim import Claim, Part
-from flexarm_env.thesis.constants import EXPERIMENT_3, MOTOR_COULOMB, MOTOR_VISCOUS, STATIC_WHOLE, TABLE
-from flexarm_env.thesis.constants import WHOLE_COULOMB, WHOLE_VISCOUS  # fmt: skip
+from flexarm_env.thesis.constants import (
+    EXPERIMENT_3,
+    MOTOR_COULOMB,
+    MOTOR_VISCOUS,
+    STATIC_WHOLE,
+    TABLE,
+    WHOLE_COULOMB,
+    WHOLE_VISCOUS,
+)
 
 
 def constants() -> Claim:
@@ -110,7 +117,8 @@ def whole_arm() -> Claim:
     return Claim(
         "T2",
         "Appendix A, experiments 4 and 5",
-        "A periodic energy balance gives b = 0.0452 Nms and T_f = 0.188 Nm of the whole arm; a slow ramp of current gives the static "
+        "A periodic energy balance gives b = 0.0452 Nms and T_f = 0.188 Nm of the whole arm; a slow ramp of current gives "
+        "the static "
         "0.2387 Nm (motor side).",
         [balance, ramp],
         "over a period hub and beam give back what they took, so the vibration does not disturb the balance; noise does, since "

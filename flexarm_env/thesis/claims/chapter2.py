@@ -22,13 +22,15 @@ def position() -> Claim:
         "does not oscillate.",
         [
             Part(
-                f"the hub goes to {ends[0]:.1f}°, then to ±{ends[1]:.1f}°; beside the flexible arm that stands in for the rig its "
+                f"the hub goes to {ends[0]:.1f}°, then to ±{ends[1]:.1f}°; beside the flexible arm that stands in for the "
+                "rig its "
                 f"angle is {rms:.2f}° rms off",
                 rms < 3.0,
                 {"end of first half period [°]": ends[0], "end of second [°]": ends[1], "from flexible arm [°]": rms},
             ),
             Part(
-                f"from 50 ms after a step on the rigid arm's speed turns round once, at its peak; the flexible arm's {rough} times",
+                "from 50 ms after a step on the rigid arm's speed turns round once, at its peak; the flexible arm's "
+                f"{rough} times",
                 turns == 1,
                 {"turning points, rigid": float(turns), "turning points, flexible": float(rough)},
             ),

@@ -9,7 +9,7 @@ from flexarm_env.thesis.claims.claim import Claim, Part
 from flexarm_env.thesis.constants import CLAMPED_DELAY, INERTIA_CHANGE, RIG_MOVING, TABLE
 from flexarm_env.thesis.fixed_step import clamped
 from flexarm_env.thesis.frequency import vibration
-from flexarm_env.thesis.runs import DURATION
+from flexarm_env.thesis.runs import DURATION, clock
 
 
 def two_frequencies() -> Claim:
@@ -62,11 +62,13 @@ def falling_frequency() -> Claim:
     return Claim(
         "T6",
         "section 3.4, Fig. 3.5",
-        "With Coulomb friction only, and no static friction, the frequency falls towards the clamped one as the speed nears zero; "
+        "With Coulomb friction only, and no static friction, the frequency falls towards the clamped one as the speed "
+        "nears zero; "
         "the hub still turns.",
         [
             Part(
-                f"the strain goes from {before.frequency:.2f} to {after.frequency:.2f} Hz (clamped 2.43), and the hub still slips "
+                f"the strain goes from {before.frequency:.2f} to {after.frequency:.2f} Hz (clamped 2.43), and the hub "
+                "still slips "
                 f"now and then until {made.rest():.2f} s",
                 abs(after.frequency / 2.43 - 1.0) < 0.05 and made.rest() > first + 0.5,
                 numbers,
@@ -77,8 +79,10 @@ def falling_frequency() -> Claim:
                 late.frequency < 0.8 * before.frequency,
             ),
         ],
-        "while the hub turns one way, Coulomb friction is a constant torque and changes no frequency. After the first stop it holds "
-        f"the hub as static friction would: between its first stop and its last motion the hub slips for {share:.1f} % of the time.",
+        "while the hub turns one way, Coulomb friction is a constant torque and changes no frequency. After the first stop "
+        "it holds "
+        f"the hub as static friction would: between its first stop and its last motion the hub slips for {share:.1f} % of "
+        "the time.",
         ("3.5",),
     )
 
@@ -105,7 +109,8 @@ def motor_inertia() -> Claim:
             ),
             Part(f"0.0003 of {TABLE['J_m']} is {share:.1f} %", abs(share - 12.0) < 1.0, {"change of J_m [%]": share}),
         ],
-        "the first column of M_T was not divided by N (erratum 3), which makes the hub lighter by a third; with it the thesis reaches "
+        "the first column of M_T was not divided by N (erratum 3), which makes the hub lighter by a third; with it the "
+        "thesis reaches "
         "the rig's frequency, with the consistent matrices the model stays below.",
         ("3.5", "3.6"),
     )
@@ -117,17 +122,19 @@ def clamped_alone() -> Claim:
     found = {}
     for name, hub in (("double", double), ("single", single)):
         out = chapter3.clamped_pulse(hub)
-        time = np.arange(len(out)) * 0.001
+        time = clock(len(out))
         found[name] = (vibration(time, out[:, 2], 1.02, 1.5, (1.0, 16.0)).frequency, float(np.max(np.abs(out[:, 2]))))
     exact = {name: clamped(hub).frequencies()[0] for name, hub in (("double", double), ("single", single))}
     rig, most = chapter3.moving("combined").frequency, float(np.max(np.abs(chapter3.after_pulse("combined").strain)))
     return Claim(
         "T8",
         "section 3.4, Fig. 3.7",
-        "The clamped model alone has neither the right frequencies nor the right amplitudes, so a moving hub needs the pinned model.",
+        "The clamped model alone has neither the right frequencies nor the right amplitudes, so a moving hub needs the "
+        "pinned model.",
         [
             Part(
-                f"as printed it vibrates at {found['double'][0]:.2f} Hz (undamped {exact['double']:.2f}) where the pinned model has "
+                f"as printed it vibrates at {found['double'][0]:.2f} Hz (undamped {exact['double']:.2f}) where the pinned "
+                "model has "
                 f"{rig:.2f}, and reads {found['double'][1]:.2f} V at most in place of {most:.2f} V",
                 abs(found["double"][0] / rig - 1.0) > 0.3,
                 {
@@ -148,9 +155,12 @@ def clamped_alone() -> Claim:
                 },
             ),
         ],
-        "eq. 3.26 puts the J of eq. 2.1, with the arm in it, beside M_o, which is the arm's reaction already: the arm counts twice "
-        f"(erratum 10). A quarter of that model's period is {0.25 / exact['double']:.3f} s, the thesis's t_d of {CLAMPED_DELAY} s. A "
-        "beam seen from a hub that turns is the pinned beam in other coordinates, so the boundary condition is not what went wrong; "
+        "eq. 3.26 puts the J of eq. 2.1, with the arm in it, beside M_o, which is the arm's reaction already: the arm "
+        "counts twice "
+        f"(erratum 10). A quarter of that model's period is {0.25 / exact['double']:.3f} s, the thesis's t_d of "
+        f"{CLAMPED_DELAY} s. A "
+        "beam seen from a hub that turns is the pinned beam in other coordinates, so the boundary condition is not what "
+        "went wrong; "
         "what is left of the difference is that one element's EI y″(0) is not its reaction.",
         ("3.7",),
     )
@@ -168,7 +178,8 @@ def beam_damping() -> Claim:
         "Damping of 0.003 Nms in the pinned beam makes the oscillations smooth, as on the rig, and their amplitude greater.",
         [
             Part(
-                f"the second mode, which makes them rough, decays by {second[1]:.1f}/s in place of {second[0]:.1f}/s, the first by "
+                f"the second mode, which makes them rough, decays by {second[1]:.1f}/s in place of {second[0]:.1f}/s, the "
+                "first by "
                 f"{first[1].decay:.1f}/s in place of {first[0].decay:.1f}/s",
                 second[1] > 1.5 * second[0],
                 {
@@ -184,7 +195,8 @@ def beam_damping() -> Claim:
                 {"strain, plain [V]": size[0], "strain, damped [V]": size[1]},
             ),
         ],
-        "damping takes energy out. The thesis does not say where its 0.003 Nms act, and says itself that b and T_f would need other "
+        "damping takes energy out. The thesis does not say where its 0.003 Nms act, and says itself that b and T_f would "
+        "need other "
         "values; here they damp bending, with a Kelvin-Voigt time of 0.003 L/EI = 0.38 ms.",
         ("3.9",),
     )

@@ -8,6 +8,7 @@ from flexarm_env.thesis import chapter3, suppression
 from flexarm_env.thesis.claims.claim import Claim, Part
 from flexarm_env.thesis.constants import CLAMPED_DELAY
 from flexarm_env.thesis.frequency import vibration
+from flexarm_env.thesis.runs import clock
 from flexarm_env.thesis.suppression import swing, with_friction
 
 #: A strain [V from peak to peak] is the same within this share; what differs by less is not called better or worse.
@@ -18,7 +19,7 @@ def clamped_model() -> Claim:
     """T11."""
     double, single = chapter3.double_inertia(), chapter3.hub_inertia()
     free, at_once, late = (chapter3.clamped_control(double, *law) for law in ((0.0,), (-1.0,), (-1.0, CLAMPED_DELAY)))
-    time = np.arange(len(free)) * 0.001
+    time = clock(len(free))
     speed = [vibration(time, out[:, 1], 1.0, 5.0).amplitude for out in (free, at_once)]
     strain = [vibration(time, out[:, 2], 1.0, 5.0) for out in (free, at_once, late)]
     swings = [swing(out[:, 2], 4.0, 5.0) for out in (free, at_once, late)]
@@ -30,7 +31,8 @@ def clamped_model() -> Claim:
         "t_d = 0.074 s damps the beam.",
         [
             Part(
-                f"vibration of the speed {speed[0]:.2f} → {speed[1]:.1g} rad/s; the beam swings on at {strain[1].frequency:.2f} Hz, "
+                f"vibration of the speed {speed[0]:.2f} → {speed[1]:.1g} rad/s; the beam swings on at "
+                f"{strain[1].frequency:.2f} Hz, "
                 f"{swings[1]:.2f} V from peak to peak over the fifth second",
                 speed[1] < 1e-3 * speed[0] and abs(strain[1].decay) < 0.05,
                 {
@@ -41,12 +43,14 @@ def clamped_model() -> Claim:
                 },
             ),
             Part(
-                f"with t_d = {CLAMPED_DELAY} s {swings[2]:.3f} V are left over the fifth second of {swings[0]:.2f} V without control",
+                f"with t_d = {CLAMPED_DELAY} s {swings[2]:.3f} V are left over the fifth second of {swings[0]:.2f} V "
+                "without control",
                 swings[2] < 0.2 * swings[0],
                 {"strain, t_d = 0.074 s [V]": swings[2], "strain, free [V]": swings[0]},
             ),
         ],
-        "−M_o cancels the beam's torque on the hub and leaves a beam on a hub that does not feel it, in any model of this form. The "
+        "−M_o cancels the beam's torque on the hub and leaves a beam on a hub that does not feel it, in any model of this "
+        "form. The "
         f"delay is a quarter period of the model that counts the arm twice (T8); with the arm counted once the same delay makes "
         f"the beam {'diverge' if once > swings[0] else 'calm'}.",
         ("4.2", "4.3"),
@@ -63,7 +67,8 @@ def delayed_torque() -> Claim:
     return Claim(
         "T12",
         "section 4.1, Figs. 4.4 and 4.5",
-        "Pinned model with friction: K_mo = −1, t_d = 0.026 s is unstable; with the current limited to 5 A it goes on oscillating in "
+        "Pinned model with friction: K_mo = −1, t_d = 0.026 s is unstable; with the current limited to 5 A it goes on "
+        "oscillating in "
         "saturation.",
         [
             Part(
@@ -72,7 +77,8 @@ def delayed_torque() -> Claim:
                 {"strain [V]": grown, "at [s]": float(wild.time[-1])},
             ),
             Part(
-                f"with 5 A the current goes from {reach[0]:.0f} to {reach[1]:.0f} A in the fifth second, and the strain swings by "
+                f"with 5 A the current goes from {reach[0]:.0f} to {reach[1]:.0f} A in the fifth second, and the strain "
+                "swings by "
                 f"{size:.1f} V",
                 reach == [-5.0, 5.0] and size > 1.0,
                 {"current, least [A]": reach[0], "current, most [A]": reach[1], "strain [V]": size},
@@ -100,7 +106,8 @@ def torque_at_once() -> Claim:
                 {"damping ratio, free": ratios[0], "damping ratio": ratios[1]},
             ),
             Part(
-                f"but cycles take longer, {free.frequency:.2f} → {held.frequency:.2f} Hz, so that it decays by {held.decay:.2f}/s in place "
+                f"but cycles take longer, {free.frequency:.2f} → {held.frequency:.2f} Hz, so that it decays by "
+                f"{held.decay:.2f}/s in place "
                 f"of {free.decay:.2f}/s, from {most[1]:.1f} V at most in place of {most[0]:.1f} V",
                 held.decay > free.decay,
                 {
@@ -114,8 +121,10 @@ def torque_at_once() -> Claim:
                 },
             ),
         ],
-        "−M_o takes the beam's torque from the hub, which then gives way at a lower frequency, and its viscous friction takes the "
-        f"energy. With the command held for 5 ms, as on a rig, it does damp, by {sampled.decay:.1f}/s: a delay of half a sample helps "
+        "−M_o takes the beam's torque from the hub, which then gives way at a lower frequency, and its viscous friction "
+        "takes the "
+        f"energy. With the command held for 5 ms, as on a rig, it does damp, by {sampled.decay:.1f}/s: a delay of half a "
+        "sample helps "
         "here, and one of 26 ms does not (T12).",
         ("4.7",),
     )
@@ -138,7 +147,8 @@ def with_dry_friction() -> Claim:
             )
             for name, value in zip(("without compensation", "with compensation"), found, strict=True)
         ],
-        f"the hub sticks at {plain.rest():.2f} s, or {helped.rest():.2f} s with compensation, while the beam still swings, larger than "
+        f"the hub sticks at {plain.rest():.2f} s, or {helped.rest():.2f} s with compensation, while the beam still swings, "
+        "larger than "
         "before since −M_o drove it; a hub that is held takes no energy out.",
         ("4.8", "4.9"),
     )
@@ -172,7 +182,8 @@ def positive_gain() -> Claim:
                 {"left, free [V]": left[0], "left [V]": left[1], "left, compensated [V]": left[2]},
             ),
         ],
-        "+M_o stiffens the hub: it takes 1 A and more out of the pulse, which strikes the beam less, and lets the viscous friction "
+        "+M_o stiffens the hub: it takes 1 A and more out of the pulse, which strikes the beam less, and lets the viscous "
+        "friction "
         f"take less out of it. The hub goes to {plain.angle[-1]:.0f}° in place of {free.angle[-1]:.0f}°.",
         ("4.10", "4.11"),
     )
@@ -190,7 +201,8 @@ def by_region() -> Claim:
     return Claim(
         "T16",
         "sections 4.3 and 4.4, Figs. 4.12 to 4.14",
-        "K_mo = +1 at low speed only damps without touching the motion at high speed, better with compensation; so does the combined "
+        "K_mo = +1 at low speed only damps without touching the motion at high speed, better with compensation; so does "
+        "the combined "
         "controller (−1 from 0.03 rad/s of the motor on, +1 with compensation below).",
         [
             Part(
@@ -210,8 +222,10 @@ def by_region() -> Claim:
                 {"combined [V]": whole},
             ),
         ],
-        f"the low-speed term acts for a short time, and the hub comes to rest at {low.rest():.2f} s with what is left. At high speed −1 "
-        "drives the beam through the pulse and feeds on dry friction (T14): the combined controller's hub is driven to and fro for "
+        f"the low-speed term acts for a short time, and the hub comes to rest at {low.rest():.2f} s with what is left. At "
+        "high speed −1 "
+        "drives the beam through the pulse and feeds on dry friction (T14): the combined controller's hub is driven to and "
+        "fro for "
         "seconds, and more is left in the fifth second than with no control.",
         ("4.12", "4.13", "4.14"),
     )

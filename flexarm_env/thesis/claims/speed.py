@@ -99,10 +99,15 @@ def twelve_hours() -> Claim:
                 f"the product takes {1e3 * found.product:.2f} ms: {found.ratio:.0e} times as fast as that method here, "
                 f"{THESIS_SECONDS / found.product:.0e} times as fast as twelve hours",
                 found.ratio > 1.0,
-                {"product [s]": found.product, "method over product": found.ratio, "12 h over product": THESIS_SECONDS / found.product},
+                {
+                    "product [s]": found.product,
+                    "method over product": found.ratio,
+                    "12 h over product": THESIS_SECONDS / found.product,
+                },
             ),
             Part(
-                f"the method's error falls with its step: hub angle off by {found.error_coarse[0]:.0e} and {found.error_coarse[1]:.0e} rad at "
+                f"the method's error falls with its step: hub angle off by {found.error_coarse[0]:.0e} and "
+                f"{found.error_coarse[1]:.0e} rad at "
                 f"steps of {COARSE[0]:.0e} and {COARSE[1]:.0e} s, by {found.error_fine:.0e} rad over the stretch at 1e-9 s",
                 found.error_coarse[1] < 0.2 * found.error_coarse[0],
                 {
@@ -112,7 +117,8 @@ def twelve_hours() -> Claim:
                 },
             ),
         ],
-        "a fixed step must be short because each change between slip and stick is found a step late, and the error is as large as the "
+        "a fixed step must be short because each change between slip and stick is found a step late, and the error is as "
+        "large as the "
         "step. The product moves the linear arm exactly and finds the changes inside a sample; an independent solver agrees with "
         "it to 1e-9 of each signal (tests/plant), which is below what the method reaches at its step.",
     )

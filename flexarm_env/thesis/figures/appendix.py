@@ -6,7 +6,7 @@ import numpy as np
 
 from flexarm_env.thesis import appendix, arms
 from flexarm_env.thesis.constants import EXPERIMENT_2, EXPERIMENT_3, MOTOR_COULOMB, MOTOR_VISCOUS, TABLE
-from flexarm_env.thesis.runs import run
+from flexarm_env.thesis.runs import clock, run
 from flexarm_env.thesis.sheet import BEHIND, MAIN, OTHER, POINTS, SIGNAL, THIRD, Curve, Panel, Sheet
 
 SPEED = "motor speed [rad/s]"
@@ -35,7 +35,10 @@ def motor_constant() -> Sheet:
             ),
             Panel(
                 "residual of E\n[mV]",
-                [Curve(speed, 1e3 * whole.residual, "E = kφ ω", OTHER), Curve(speed, 1e3 * line.residual, "E = kφ ω + drop", MAIN)],
+                [
+                    Curve(speed, 1e3 * whole.residual, "E = kφ ω", OTHER),
+                    Curve(speed, 1e3 * line.residual, "E = kφ ω + drop", MAIN),
+                ],
                 lines=((0.0, ""),),
             ),
         ],
@@ -53,7 +56,10 @@ def power() -> Sheet:
         [
             Panel(
                 "P/ω [Nm]",
-                [Curve(speed, line.slope * speed + line.intercept, "fitted line"), Curve(speed, ratio, "measured, as printed", POINTS)],
+                [
+                    Curve(speed, line.slope * speed + line.intercept, "fitted line"),
+                    Curve(speed, ratio, "measured, as printed", POINTS),
+                ],
             ),
             Panel("residual\n[mNm]", [Curve(speed, 1e3 * line.residual, "measured, as printed", POINTS)], lines=((0.0, ""),)),
         ],
@@ -85,7 +91,10 @@ def balance() -> Sheet:
     label = f"b = {line.intercept:.4f} Nms, T_f = {line.slope:.4f} Nm"
     panel = Panel(
         "∫P dt / ∫ω² dt\n[Nms]",
-        [Curve(ends, line.intercept + line.slope * ends, label), Curve(points[:, 0], points[:, 1], "simulated square waves", POINTS)],
+        [
+            Curve(ends, line.intercept + line.slope * ends, label),
+            Curve(points[:, 0], points[:, 1], "simulated square waves", POINTS),
+        ],
     )
     return Sheet("A.4", "Experiment 4: energy balance over a period", [panel], x="∫|ω| dt / ∫ω² dt [s/rad]")
 
@@ -93,7 +102,7 @@ def balance() -> Sheet:
 def ramp() -> Sheet:
     """Experiment 5."""
     arm = arms.combined()
-    feed = 0.05 * 0.005 * np.arange(3000)
+    feed = 0.05 * clock(3000, 0.005)
     made = run(arm, feed=feed, interval=0.005)
     torque = TABLE["kphi"] * made.command
     static = appendix.static_torque()

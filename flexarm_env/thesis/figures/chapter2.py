@@ -6,7 +6,7 @@ import numpy as np
 
 from flexarm_env.thesis import chapter2
 from flexarm_env.thesis.chapter2 import collision, flexible, rigid
-from flexarm_env.thesis.runs import INTERVAL, Run
+from flexarm_env.thesis.runs import Run, clock
 from flexarm_env.thesis.sheet import BEHIND, MAIN, OTHER, SIGNAL, THIRD, Curve, Panel, Sheet, panels
 
 STAND_IN = "stand-in for the rig: flexible, six elements, noise"
@@ -42,7 +42,7 @@ def jumps(number: str, rate: bool) -> Sheet:
     slow, with_gap, without = flexible(rate), rigid(True, rate), rigid(False, rate)
     law = collision(True, rate)
     printed = collision(True, rate, printed=True)
-    time = np.arange(len(law)) * INTERVAL
+    time = clock(len(law))
     whole = _speeds((with_gap, "rigid, backlash, teeth give way", MAIN), (without, "rigid, no backlash", OTHER))
     collided = Curve(time, law[:, 1], "rigid, backlash, collision of eq. 2.19", THIRD)
     as_printed = Curve(time, printed[:, 1], "collision, parting by eq. 2.22 as printed", OTHER)

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from flexarm_env.thesis import chapter3
+from flexarm_env.thesis import chapter3, printed
 from flexarm_env.thesis.chapter3 import after_pulse, clamped_pulse
-from flexarm_env.thesis.fixed_step import GAGE, STIFFNESS
 from flexarm_env.thesis.frequency import over_time
-from flexarm_env.thesis.runs import INTERVAL, Floats, Run
+from flexarm_env.thesis.runs import Floats, Run, clock
 from flexarm_env.thesis.sheet import BEHIND, MAIN, OTHER, POINTS, SIGNAL, Curve, Panel, Sheet, panels
 
 STAND_IN = "stand-in for the rig: six elements, gears"
@@ -45,10 +42,10 @@ def adjusted() -> Sheet:
     return _three("3.6", "Coulomb friction only, J_m less 0.0003 kg m²", "lighter", "printed, lighter")
 
 
-def _three(number: str, title: str, model: str, printed: str) -> Sheet:
+def _three(number: str, title: str, model: str, misprinted: str) -> Sheet:
     runs = [
         (after_pulse("stand-in"), STAND_IN, BEHIND),
-        (after_pulse(printed), "M_T as printed", OTHER),
+        (after_pulse(misprinted), "M_T as printed", OTHER),
         (after_pulse(model), "consistent", MAIN),
     ]
     strain, speed = panels(runs, "strain", "speed")
@@ -59,7 +56,8 @@ def clamped() -> Sheet:
     """Fig. 3.7."""
     printed, once = (clamped_pulse(hub) for hub in (chapter3.double_inertia(), chapter3.hub_inertia()))
     rig = after_pulse("combined")
-    strain, speed = [], []
+    strain: list[Curve] = []
+    speed: list[Curve] = []
     for signals, column in ((strain, 2), (speed, 1)):
         signals.append(Curve(rig.time, rig.strain if column == 2 else rig.speed, "combined model", BEHIND))
         signals.append(_column(once, column, "clamped model, arm counted once", OTHER))
@@ -72,7 +70,7 @@ def combined() -> Sheet:
     made = after_pulse("combined")
     runs = [(after_pulse("stand-in"), STAND_IN, BEHIND), (made, "combined model", MAIN)]
     strain, speed, angle = panels(runs, "strain", "speed", "angle")
-    gage = Curve(made.time, printed_gage(made), "the same, gage with +0.6 v as printed", OTHER)
+    gage = Curve(made.time, printed.gage(made), "the same, gage with +0.6 v as printed", OTHER)
     return Sheet(
         "3.8",
         "The combined model",
@@ -100,15 +98,6 @@ def payload() -> Sheet:
     return Sheet("3.10", "A payload of 300 g", [strain, speed, _frequencies(runs, None)], span=(0.4, 5.0))
 
 
-def printed_gage(made: Run) -> Floats:
-    """The second gage by section 3.3 as printed, EI(0.6 v + 1.3 s) [V], from the two gages of a run (erratum 4)."""
-    per_volt = 1.0 / (GAGE * STIFFNESS)
-    root, middle = made.signals["strain_base"] * per_volt, made.strain * per_volt
-    # root = 6 v − 2 s, middle = −0.6 v + 1.3 s
-    v, s = np.linalg.solve(np.array([[6.0, -2.0], [-0.6, 1.3]]), np.vstack([root, middle]))
-    return np.asarray(GAGE * STIFFNESS * (0.6 * v + 1.3 * s))
-
-
 def _frequencies(runs: list[tuple[Run, str, str]] | tuple[tuple[Run, str, str], ...], rig: float | None) -> Panel:
     """Frequency of the strain over time."""
     curves = []
@@ -120,6 +109,4 @@ def _frequencies(runs: list[tuple[Run, str, str]] | tuple[tuple[Run, str, str], 
 
 
 def _column(out: Floats, column: int, label: str, role: str) -> Curve:
-    return Curve(np.arange(len(out)) * INTERVAL, out[:, column], label, role)
-
-
+    return Curve(clock(len(out)), out[:, column], label, role)

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexarm_env.thesis import chapter3, suppression
 from flexarm_env.thesis.constants import CLAMPED_DELAY
-from flexarm_env.thesis.runs import INTERVAL, Run
+from flexarm_env.thesis.runs import Run, clock
 from flexarm_env.thesis.sheet import BEHIND, MAIN, OTHER, SIGNAL, THIRD, Curve, Panel, Sheet, panels
 from flexarm_env.thesis.suppression import delayed, slew, stand_in, with_friction, without_friction
 
@@ -46,7 +46,7 @@ def clamped(number: str, delay: float) -> Sheet:
     found = []
     for column, name in ((2, "strain"), (1, "speed"), (3, "command")):
         curves = [
-            Curve((np.arange(len(out)) * INTERVAL)[:end], out[:end, column], label, role)
+            Curve(clock(len(out))[:end], out[:end, column], label, role)
             for (out, label, role), end in zip(runs, ends, strict=True)
         ]
         found.append(Panel(SIGNAL[name], curves))
@@ -164,6 +164,11 @@ def experiments() -> list[Sheet]:
     both = [(alone, "PD alone", BEHIND), (practical, "and suppression at high speed, gage × 1.18 A/V", MAIN)]
     strain = panels(both, "strain")[0]
     note = "Of the rig in the thesis; here of the finer model that stands in for it."
-    sheets = [_slew("4.20", alone, "PD alone, on the stand-in"), _slew("4.21", practical, "practical choice, on the stand-in", both[:1])]
-    last = Sheet("4.22", "Strain under both, on the stand-in", [strain, Panel(strain.label, strain.curves, (-0.3, 0.3), window=(1.5, 5.0))])
+    sheets = [
+        _slew("4.20", alone, "PD alone, on the stand-in"),
+        _slew("4.21", practical, "practical choice, on the stand-in", both[:1]),
+    ]
+    last = Sheet(
+        "4.22", "Strain under both, on the stand-in", [strain, Panel(strain.label, strain.curves, (-0.3, 0.3), window=(1.5, 5.0))]
+    )
     return [Sheet(s.number, s.title, s.panels, s.x, s.span, note) for s in (*sheets, last)]
