@@ -12,13 +12,16 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 export MPLBACKEND ?= Agg
 
-.PHONY: help demo test lint bench baselines results docs clean clean-cache
+.PHONY: help demo thesis test lint bench baselines results docs clean clean-cache
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 22
 
 demo: $(PLOTS) ## find a missing effect in a recording, add it, draw the result in results/demo/
 	$(BIN)/flexarm demo
+
+thesis: $(PLOTS) ## check the thesis's claims and draw its figures again in results/thesis/
+	$(BIN)/flexarm thesis
 
 test: $(DEV) ## run the tests; SLOW=1 adds the slow ones, after the others
 	$(BIN)/python -m pytest $(if $(SLOW),-m "slow or not slow")
@@ -35,7 +38,7 @@ baselines: $(DEV) ## evaluate all controllers and film two of them, into results
 	$(BIN)/python -m agents.evaluate
 	$(BIN)/python -m agents.film
 
-results: demo baselines bench ## make again what results/ holds
+results: demo thesis baselines bench ## make again what results/ holds
 
 docs: $(DEV) ## run the snippets in the documentation
 	$(BIN)/python -m pytest -m "slow or not slow" tests/test_docs.py

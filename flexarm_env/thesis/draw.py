@@ -85,8 +85,14 @@ def _panel(axes: Axes, panel: Panel, span: tuple[float, float] | None) -> None:
         axes.plot(curve.x[shown], curve.y[shown], label=curve.label, **LOOK[curve.role])
     for height, words in panel.lines:
         axes.axhline(height, color=INK, lw=0.7, ls=(0, (6, 3)))
-        place: dict[str, Any] = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "top", "fontsize": 7}
-        axes.annotate(words, (0.0, height), (3, -2), **place)
+        place: dict[str, Any] = {
+            "xycoords": ("axes fraction", "data"),
+            "textcoords": "offset points",
+            "va": "top",
+            "ha": "right",
+            "fontsize": 7,
+        }
+        axes.annotate(words, (1.0, height), (-3, -2), **place)
     if panel.compressed:
         axes.set_yscale("symlog", linthresh=1.0)
         axes.set_yticks([-1e4, -1e2, -1.0, 1.0, 1e2, 1e4])

@@ -56,7 +56,7 @@ def _equations() -> list[Erratum]:
         Erratum(
             "1", "eqs. 3.8, 3.22", "k = ∫ EI φ_i φ_j dx", "∫ EI φ_i″ φ_j″ dx", "first stuck frequency [Hz]", shapes[0], shapes[1]
         ),
-        Erratum("2", "eqs. 3.12, 3.30", "M⁻¹K, M⁻¹B", "−M⁻¹K, −M⁻¹B", "fastest growth [1/s]", signs[0], max(signs[1], 0.0)),
+        Erratum("2", "eqs. 3.12, 3.30", "M⁻¹K, M⁻¹B", "−M⁻¹K, −M⁻¹B", "fastest growth [1/s]", signs[0], round(max(signs[1], 0.0), 9)),
     ]  # fmt: skip
 
 

@@ -25,7 +25,7 @@ def tracking() -> Sheet:
     runs = [
         (slow, STAND_IN, BEHIND),
         (made, "rigid, backlash and friction", MAIN),
-        (heavy, "the same, J_a = 0.158 kg m² as printed", OTHER),
+        (heavy, "rigid, J_a = 0.158 kg m² as printed", OTHER),
     ]
     angle, speed, current = panels(runs, "angle", "speed", "command")
     target = Curve(made.time, np.rad2deg(made.target), "set-point", THIRD)

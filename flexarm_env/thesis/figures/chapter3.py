@@ -70,7 +70,7 @@ def combined() -> Sheet:
     made = after_pulse("combined")
     runs = [(after_pulse("stand-in"), STAND_IN, BEHIND), (made, "combined model", MAIN)]
     strain, speed, angle = panels(runs, "strain", "speed", "angle")
-    gage = Curve(made.time, printed.gage(made), "the same, gage with +0.6 v as printed", OTHER)
+    gage = Curve(made.time, printed.gage(made), "combined model, gage with +0.6 v as printed", OTHER)
     return Sheet(
         "3.8",
         "The combined model",
