@@ -51,12 +51,12 @@ def errata() -> list[Erratum]:
 
 
 def _equations() -> list[Erratum]:
-    shapes, signs = printed.beam_from_shapes(), printed.growth_time()
+    shapes, signs = printed.beam_from_shapes(), printed.growth_rate()
     return [
         Erratum(
             "1", "eqs. 3.8, 3.22", "k = ∫ EI φ_i φ_j dx", "∫ EI φ_i″ φ_j″ dx", "first stuck frequency [Hz]", shapes[0], shapes[1]
         ),
-        Erratum("2", "eqs. 3.12, 3.30", "M⁻¹K, M⁻¹B", "−M⁻¹K, −M⁻¹B", "fastest growth [1/s]", signs[0], round(max(signs[1], 0.0), 9)),
+        Erratum("2", "eqs. 3.12, 3.30", "M⁻¹K, M⁻¹B", "−M⁻¹K, −M⁻¹B", "fastest growth [1/s]", *signs),
     ]  # fmt: skip
 
 
