@@ -47,7 +47,8 @@ class Erratum:
 
 def errata() -> list[Erratum]:
     """Return them, in order."""
-    return [*_equations(), *_matrices(), *_beam_torque(), *_rigid(), *_captions(), *_constants()]
+    found = [*_equations(), *_matrices(), *_beam_torque(), *_rigid(), *_captions(), *_constants()]
+    return sorted(found, key=lambda row: int(row.number))
 
 
 def _equations() -> list[Erratum]:
@@ -105,7 +106,7 @@ def _rigid() -> list[Erratum]:
             "6", "eq. 2.22", "gears part where a speed changes sign", "where the force between them would pull",
             "partings of the gears in 10 s", float(partings[0]), float(partings[1]), ("2.7", "2.8"),
         ),
-        Erratum("7", "eq. 2.4, nomenclature", "d_1, d_2", "exchanged", "J_a [kg m²]", *printed.rigid_inertia()),
+        Erratum("7", "Table 2.1", "J_a = 0.158 kg m²", "m L³/3 + 0.00129", "J_a [kg m²]", *printed.rigid_inertia()),
         Erratum(
             "7", "Table 2.1", "J_a = 0.158 kg m²", "m L³/3 + 0.00129 = 0.1426", "hub angle at 4.9 s in Fig. 2.6 [°]",
             float(heavy[end]), float(light[end]), ("2.6",),

@@ -22,12 +22,12 @@ def constants() -> Claim:
     return Claim(
         "T1",
         "Appendix A",
-        "kφ ≈ 0.33 Vs/rad; b = 0.0011 Nms and T_f = 0.1152 Nm from P/ω; J = 0.00177, 0.001745, 0.001848 kg m² from the times to "
-        "stop; b, T_f and T_s split between motor and arm.",
+        "kφ ≈ 0.33 Vs/rad; b = 0.0011 Nms and T_f = 0.1152 Nm from P/ω; J = 0.00177, 0.001745, 0.001848 kg m² from the "
+        "times to stop; b, T_f and T_s split between motor and arm.",
         [_motor_constant(), _power(), _stopping(), _slope(), _split()],
-        "the printed measurements give the printed constants, but for the inertia by the initial slope: its equation lacks the "
-        "Coulomb torque, and with it the method that the thesis gives up agrees with the other. Two residuals show what the "
-        "motor's model lacks: E has a constant drop, and P/ω bends.",
+        "the printed measurements give the printed constants, but for the inertia by the initial slope: its equation "
+        "lacks the Coulomb torque, and with it the method that the thesis gives up agrees with the other. Two residuals "
+        "show what the motor's model lacks: E has a constant drop, and P/ω bends.",
         ("A.1", "A.2", "A.3"),
     )
 
@@ -44,8 +44,8 @@ def _motor_constant() -> Part:
         "residual with drop [mV]": 1e3 * line.rms,
     }
     words = (
-        f"kφ = {mean:.4f} Vs/rad; with a constant drop of {line.intercept:.3f} V it is {line.slope:.4f}, and the residual falls "
-        f"from {1e3 * whole.rms:.0f} to {1e3 * line.rms:.0f} mV rms"
+        f"kφ = {mean:.4f} Vs/rad; with a constant drop of {line.intercept:.3f} V it is {line.slope:.4f}, and the residual "
+        f"falls from {1e3 * whole.rms:.0f} to {1e3 * line.rms:.0f} mV rms"
     )
     return Part(words, abs(mean - 0.33) < 0.002, numbers)
 
@@ -77,8 +77,8 @@ def _slope() -> Part:
     numbers |= {f"simulated J by {key} [kg m²]": value for key, value in made.items()}
     words = (
         f"the slopes give {', '.join(f'{v:.6f}' for v in printed)} kg m² as printed and "
-        f"{', '.join(f'{v:.6f}' for v in mended)} with T_f in the equation; on a simulated run-down of J = {TABLE['J_m']} the "
-        f"three methods give {made['stopping time']:.6f}, {made['slope as printed']:.6f} "
+        f"{', '.join(f'{v:.6f}' for v in mended)} with T_f in the equation; on a simulated run-down of J = {TABLE['J_m']} "
+        f"the three methods give {made['stopping time']:.6f}, {made['slope as printed']:.6f} "
         f"({made['slope with Coulomb torque']:.6f} mended) and {made['whole curve']:.6f}"
     )
     return Part(words, bool(np.all(np.abs(printed / TABLE["J_m"] - 1.0) < 0.1)), numbers)
@@ -88,8 +88,8 @@ def _split() -> Part:
     found = appendix.split()
     numbers = {f"{key} [{'Nms' if key.startswith('b') else 'Nm'}]": value for key, value in found.items()}
     words = (
-        f"motor {found['T_mf']:.3f} Nm, {found['b_m']:.5f} Nms, {found['T_ms']:.5f} Nm at rest; "
-        f"arm {found['T_af']:.3f} Nm, {found['b_s']:.4f} Nms, {found['T_as']:.5f} Nm at rest"
+        f"motor {found['T_mf']:.3f} Nm, {found['b_m']:.5f} Nms, {found['T_ms']:.5f} Nm at rest; arm {found['T_af']:.3f} "
+        f"Nm, {found['b_s']:.4f} Nms, {found['T_as']:.5f} Nm at rest"
     )
     close = {key: abs(value / TABLE[key] - 1.0) < (0.05 if key == "b_m" else 2e-3) for key, value in found.items()}
     return Part(words, all(close.values()), numbers)
@@ -118,10 +118,9 @@ def whole_arm() -> Claim:
         "T2",
         "Appendix A, experiments 4 and 5",
         "A periodic energy balance gives b = 0.0452 Nms and T_f = 0.188 Nm of the whole arm; a slow ramp of current gives "
-        "the static "
-        "0.2387 Nm (motor side).",
+        "the static 0.2387 Nm (motor side).",
         [balance, ramp],
-        "over a period hub and beam give back what they took, so the vibration does not disturb the balance; noise does, since "
-        f"|ω| and ω² of a resting hub then are not zero (motor alone: b = {MOTOR_VISCOUS}, T_f = {MOTOR_COULOMB}).",
+        "over a period hub and beam give back what they took, so the vibration does not disturb the balance; noise does, "
+        f"since |ω| and ω² of a resting hub then are not zero (motor alone: b = {MOTOR_VISCOUS}, T_f = {MOTOR_COULOMB}).",
         ("A.4", "A.5"),
     )

@@ -18,13 +18,12 @@ def position() -> Claim:
     return Claim(
         "T3",
         "section 2.3, Fig. 2.6",
-        "The rigid model under PD (P = 2.5308, D = 0.6625) on a square wave of ±50°, 0.2 Hz matches the position, and its speed "
-        "does not oscillate.",
+        "The rigid model under PD (P = 2.5308, D = 0.6625) on a square wave of ±50°, 0.2 Hz matches the position, and its "
+        "speed does not oscillate.",
         [
             Part(
                 f"the hub goes to {ends[0]:.1f}°, then to ±{ends[1]:.1f}°; beside the flexible arm that stands in for the "
-                "rig its "
-                f"angle is {rms:.2f}° rms off",
+                f"rig its angle is {rms:.2f}° rms off",
                 rms < 3.0,
                 {"end of first half period [°]": ends[0], "end of second [°]": ends[1], "from flexible arm [°]": rms},
             ),
@@ -35,8 +34,8 @@ def position() -> Claim:
                 {"turning points, rigid": float(turns), "turning points, flexible": float(rough)},
             ),
         ],
-        "the beam hardly moves the hub's slow motion, but its vibration is what the speed shows. The rig's recordings are not "
-        "printed as numbers, so a finer model with noise stands in for them.",
+        "the beam hardly moves the hub's slow motion, but its vibration is what the speed shows. The rig's recordings are "
+        "not printed as numbers, so a finer model with noise stands in for them.",
         ("2.6", "2.9"),
     )
 
@@ -50,8 +49,8 @@ def backlash() -> Claim:
     return Claim(
         "T4",
         "section 2.3, Figs. 2.7 and 2.8",
-        "The small jump of speed at the set-point step is there with backlash, gone without, and smaller when the current's rate "
-        "is limited; backlash has little effect.",
+        "The small jump of speed at the set-point step is there with backlash, gone without, and smaller when the "
+        "current's rate is limited; backlash has little effect.",
         [
             Part(
                 f"with backlash the motor jumps by {on:.2f} rad/s ({law[True, False]:.2f} by the collision of eq. 2.19)",
@@ -66,9 +65,9 @@ def backlash() -> Claim:
             ),
             _little_effect(),
         ],
-        "at rest the teeth lie on the side from which the arm was pushed last; the step drives the motor alone through the gap, "
-        "until it hits the arm. The effect `backlash` has teeth that give way and rebound, eq. 2.19 has none of it; arm and "
-        "speed before the blow are the same. The thesis gives no rate; 50 A/s is the product's.",
+        "at rest the teeth lie on the side from which the arm was pushed last; the step drives the motor alone through "
+        "the gap, until it hits the arm. The effect `backlash` has teeth that give way and rebound, eq. 2.19 has none of "
+        "it; arm and speed before the blow are the same. The thesis gives no rate; 50 A/s is the product's.",
         ("2.7", "2.8"),
     )
 

@@ -31,9 +31,8 @@ def slew_of_100_degrees() -> Claim:
         "T17",
         "section 4.5, Figs. 4.15 to 4.19",
         "100° under PD: combined and high-speed suppression leave less vibration once the hub rests and more steady-state "
-        "error; at "
-        "low speed only, the error is that of PD alone and the vibration is less, which is the best result; compensation "
-        "overcompensates.",
+        "error; at low speed only, the error is that of PD alone and the vibration is less, which is the best result; "
+        "compensation overcompensates.",
         [
             Part(
                 f"{words('pd')} of strain, rms over the fifth second; {words('vibration_dual')}",
@@ -52,16 +51,14 @@ def slew_of_100_degrees() -> Claim:
             ),
             Part(
                 f"PD's hub rests from {rest['pd']:.2f} s on, that of low speed only from {rest['vibration_low']:.2f} s; "
-                "the combined "
-                "controller's still moves at 5 s",
+                "the combined controller's still moves at 5 s",
                 rest["vibration_dual"] == float("inf") and rest["vibration_low"] > rest["pd"],
                 {"PD rests from [s]": rest["pd"], "low speed only rests from [s]": rest["vibration_low"]},
             ),
         ],
         "before the hub rests there is too little time at low speed to damp in. How the switching at zero speed falls "
-        "decides what is "
-        "left: sampled at 1 ms, low speed only leaves half of it, at 0.5 ms it stops 4° later. High-speed suppression alone does "
-        "nearly all of the work, and is the best of the four.",
+        "decides what is left: sampled at 1 ms, low speed only leaves half of it, at 0.5 ms it ends at 95.5°. High-speed "
+        "suppression alone does nearly all of the work, and is the best of the four.",
         ("4.15", "4.16", "4.17", "4.18", "4.19"),
     )
 
@@ -91,10 +88,10 @@ def practical_choice() -> Claim:
         "T18",
         "section 4.5, Figs. 4.20 to 4.22",
         "The practical choice, at high speed only and with the gage at mid-beam × K = 1.18 in place of M_o, leaves less "
-        "vibration and "
-        "more steady-state error.",
+        "vibration and more steady-state error.",
         parts,
-        "K has no printed unit. In A/V it does what Fig. 4.21 shows; as Nm/V the loop swings between the limits of the current. "
-        "The term adds to the drive while the arm speeds up and takes from it while it slows down, so the hub stops earlier.",
+        "K has no printed unit. In A/V it does what Fig. 4.21 shows; as Nm/V the loop swings between the limits of the "
+        "current. The term adds to the drive while the arm speeds up and takes from it while it slows down, so the hub "
+        "stops earlier.",
         ("4.20", "4.21", "4.22"),
     )

@@ -16,6 +16,8 @@ from flexarm_env.thesis.runs import DURATION, INTERVAL, PULSE, Floats, pulse
 
 #: The thesis's step [s], and how long a stretch of its method is run here [s].
 STEP, STRETCH = 1e-9, 0.02
+#: The stretch is timed in pieces, of which the shortest time counts: what else the machine does is no part of it.
+PIECES = 5
 #: Twelve hours [s].
 THESIS_SECONDS = 12.0 * 3600.0
 #: Coarser steps [s] at which the whole five seconds are run, to see how the error falls.
@@ -28,8 +30,8 @@ class Speed:
     """Times and errors of both methods on the pulse of 3 A, the combined model.
 
     Attributes:
-        per_step: of the thesis's method here [s].
-        method: its five seconds here, extrapolated from a stretch [s].
+        per_step: of the thesis's method here, the shortest of some [s].
+        method: its five seconds here, extrapolated [s].
         product: the product's five seconds, sampled every millisecond [s].
         error_coarse: largest difference of the hub angle from the product over 5 s, for each of COARSE [rad].
         error_fine: the same over the stretch at the thesis's step [rad].
@@ -52,9 +54,13 @@ def measure() -> Speed:
     """Measure, on this machine."""
     law, model = Law(pulse=PULSE), pinned()
     simulate(model, law, 1e-4, 1e-6, 1e-4)
-    began = time.perf_counter()
     stretch = simulate(model, law, STRETCH, STEP, INTERVAL)
-    per_step = (time.perf_counter() - began) / (STRETCH / STEP)
+    times = []
+    for _ in range(PIECES):
+        began = time.perf_counter()
+        simulate(model, law, STRETCH / PIECES, STEP, INTERVAL)
+        times.append(time.perf_counter() - began)
+    per_step = min(times) / (STRETCH / PIECES / STEP)
     product, angle = _product()
     coarse = [simulate(model, law, DURATION, step, INTERVAL)[:, 0] for step in COARSE]
     return Speed(
@@ -90,8 +96,9 @@ def twelve_hours() -> Claim:
         "Five seconds take about twelve hours at a step of 1e-9 s, in C on an SGI Origin 2000.",
         [
             Part(
-                f"the same method and step take {1e9 * found.per_step:.0f} ns a step here, {found.method:.0f} s for five seconds "
-                f"(from a stretch of {STRETCH / STEP:.0e} steps), where twelve hours are {1e6 * then:.1f} µs a step",
+                f"the same method and step take {1e9 * found.per_step:.0f} ns a step here, {found.method:.0f} s for five "
+                f"seconds (the shortest of {PIECES} stretches of {STRETCH / PIECES / STEP:.0e} steps), where twelve hours "
+                f"are {1e6 * then:.1f} µs a step",
                 found.per_step < then,
                 {"step here [s]": found.per_step, "five seconds here [s]": found.method, "step then [s]": then},
             ),
@@ -107,8 +114,8 @@ def twelve_hours() -> Claim:
             ),
             Part(
                 f"the method's error falls with its step: hub angle off by {found.error_coarse[0]:.0e} and "
-                f"{found.error_coarse[1]:.0e} rad at "
-                f"steps of {COARSE[0]:.0e} and {COARSE[1]:.0e} s, by {found.error_fine:.0e} rad over the stretch at 1e-9 s",
+                f"{found.error_coarse[1]:.0e} rad at steps of {COARSE[0]:.0e} and {COARSE[1]:.0e} s, by "
+                f"{found.error_fine:.0e} rad over the stretch at 1e-9 s",
                 found.error_coarse[1] < 0.2 * found.error_coarse[0],
                 {
                     "error at 1e-5 s [rad]": found.error_coarse[0],
@@ -118,7 +125,7 @@ def twelve_hours() -> Claim:
             ),
         ],
         "a fixed step must be short because each change between slip and stick is found a step late, and the error is as "
-        "large as the "
-        "step. The product moves the linear arm exactly and finds the changes inside a sample; an independent solver agrees with "
-        "it to 1e-9 of each signal (tests/plant), which is below what the method reaches at its step.",
+        "large as the step. The product moves the linear arm exactly and finds the changes inside a sample; an "
+        "independent solver agrees with it to 1e-9 of each signal (tests/plant), which is below what the method reaches "
+        "at its step.",
     )
