@@ -32,6 +32,13 @@ def rigid(gap: bool, rate: bool = False, printed: bool = False) -> Run:
 
 
 @functools.cache
+def misprinted_friction() -> Run:
+    """The rigid arm by eq. 2.3 as printed, where b_s acts on the acceleration: it adds to the inertia and damps nothing."""
+    arm = arms.rigid(arms.beam_inertia(arms.combined()) + TABLE["J_hub"] + TABLE["b_s"])
+    return _follow(arm.with_effect("viscous", coefficient=TABLE["N"] ** 2 * TABLE["b_m"]), "pd")
+
+
+@functools.cache
 def collision(gap: bool, rate: bool = False, printed: bool = False) -> Floats:
     """The rigid arm with the thesis's collision (eqs. 2.13 to 2.22), as impact.follow.
 

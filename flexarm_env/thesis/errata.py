@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import functools
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
-from flexarm_env.controllers import make_controller
-from flexarm_env.thesis import arms, chapter2, chapter3, printed, suppression
+from flexarm_env.thesis import chapter2, chapter3, printed, suppression
 from flexarm_env.thesis.constants import INERTIA_CHANGE, TABLE
 from flexarm_env.thesis.fixed_step import clamped
-from flexarm_env.thesis.runs import INTERVAL, run, square_wave
+from flexarm_env.thesis.runs import INTERVAL
 from flexarm_env.thesis.suppression import swing
 
 
@@ -93,14 +91,16 @@ def _beam_torque() -> list[Erratum]:
 
 
 def _rigid() -> list[Erratum]:
-    undamped, damped = _overshoot(), float(np.max(chapter2.rigid(gap=False).angle[: round(2.5 / INTERVAL)]))
+    first = slice(0, round(2.5 / INTERVAL))
+    undamped, damped = (float(r.angle[first].max()) for r in (chapter2.misprinted_friction(), chapter2.rigid(gap=False)))
     apart = [int(np.sum(np.diff(chapter2.collision(True, False, flag)[:, 4] == 0.0) > 0)) for flag in (True, False)]
     partings = [-(-count // 2) for count in apart]
     heavy, light = (chapter2.rigid(gap=False, printed=flag).angle for flag in (True, False))
     end = round(4.9 / INTERVAL)
     return [
         Erratum(
-            "6", "eq. 2.3", "b_s ω̇_a", "b_s ω_a", "largest angle in the first half period of Fig. 2.6 [°]", undamped, damped
+            "6", "eq. 2.3", "b_s ω̇_a", "b_s ω_a", "largest angle in the first half period of Fig. 2.6 [°]", undamped, damped,
+            ("2.6",),
         ),
         Erratum(
             "6", "eq. 2.22", "gears part where a speed changes sign", "where the force between them would pull",
@@ -112,15 +112,6 @@ def _rigid() -> list[Erratum]:
             float(heavy[end]), float(light[end]), ("2.6",),
         ),
     ]  # fmt: skip
-
-
-@functools.cache
-def _overshoot() -> float:
-    """Largest angle [°] of the rigid arm in the first half period if b_s acts on the acceleration."""
-    arm = arms.rigid(printed.rigid_inertia()[1] + TABLE["b_s"])
-    arm = arm.with_effect("viscous", coefficient=TABLE["N"] ** 2 * TABLE["b_m"])
-    made = run(arm, make_controller("pd", arm, INTERVAL), target=square_wave(2.5))
-    return float(np.max(made.angle))
 
 
 def _captions() -> list[Erratum]:

@@ -37,10 +37,9 @@ def page(claims: Sequence[Claim], errata: Sequence[Erratum], sheets: Mapping[str
     """
     parts = [
         f"<h1>{TITLE}</h1>",
-        f"<p>{escape(SOURCE)}. Everything here is computed from its constants by the product's plant, with the equations made "
-        "consistent. Where the thesis shows its rig, whose recordings are not printed, a finer model with gears and noise "
-        "stands in; "
-        "that is said beside it, and it is no measurement.</p>",
+        f"<p>{escape(SOURCE)}. Everything here is computed from its constants with the equations made consistent, on the "
+        "product's plant where an arm can have the model. Where the thesis shows its rig, whose recordings are not printed, a "
+        "finer model with gears and noise stands in; that is said beside it, and it is no measurement.</p>",
         f"<p>{summary(claims)}</p>",
         "<h2>Claims</h2>",
         _claims(claims),

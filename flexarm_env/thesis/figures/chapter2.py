@@ -29,10 +29,12 @@ def tracking() -> Sheet:
     ]
     angle, speed, current = panels(runs, "angle", "speed", "command")
     target = Curve(made.time, np.rad2deg(made.target), "set-point", THIRD)
+    wrong = chapter2.misprinted_friction()
+    friction = [angle.curves[1], Curve(wrong.time, wrong.angle, "rigid, b_s on the acceleration (eq. 2.3 as printed)", OTHER)]
     return Sheet(
         "2.6",
         "Set-point, position, motor speed and control effort under PD",
-        [Panel(angle.label, [*angle.curves, target]), speed, current],
+        [Panel(angle.label, [*angle.curves, target]), Panel(angle.label, friction), speed, current],
         note="The upper half of the thesis's figure is its rig, whose recording is not printed; a finer model stands in for it.",
     )
 
