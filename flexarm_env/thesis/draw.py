@@ -28,12 +28,14 @@ LEFT, RIGHT, BELOW, ABOVE, ROW = 0.95, 0.15, 0.5, 0.42, 0.19
 #: Height of a panel that has the figure to itself [inch].
 ALONE = 2.8
 DPI = 100
+#: A resting hub must look at rest: merging points as far as the project's style allows would tilt its line.
+OWN_STYLE = {**STYLE, "path.simplify_threshold": 0.1, "savefig.dpi": DPI}
 COLUMNS = 2
 
 
 def draw(sheet: Sheet) -> Figure:
     """Return the figure of a sheet."""
-    with matplotlib.rc_context(STYLE):
+    with matplotlib.rc_context(OWN_STYLE):
         own = any(panel.window is not None for panel in sheet.panels)
         figure, all_axes = _frame(sheet, own)
         for axes, panel in zip(all_axes, sheet.panels, strict=True):
@@ -70,7 +72,7 @@ def save(figure: Figure, stem: Path) -> list[Path]:
     """
     paths = [stem.with_name(f"{stem.name}.{ending}") for ending in ("png", "svg")]
     try:
-        with matplotlib.rc_context({**STYLE, "savefig.dpi": DPI}):
+        with matplotlib.rc_context(OWN_STYLE):
             for path, metadata in zip(paths, ({"Software": None}, {"Date": None, "Creator": "FlexArm"}), strict=True):
                 figure.savefig(path, metadata=metadata)
     except OSError as error:
