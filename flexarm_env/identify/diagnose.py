@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 
 from flexarm_env.arm import Arm, short_name
 from flexarm_env.identify.data import Data, prepare
+from flexarm_env.identify.hiding import could_hide
+from flexarm_env.identify.next_run import propose
 from flexarm_env.identify.origin import with_origin
 from flexarm_env.identify.preflight import preflight
 from flexarm_env.identify.problem import Score, score
 from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.refit import Progress, best_refit, estimates, with_all
 from flexarm_env.identify.results import Candidate, Diagnosis
-from flexarm_env.identify.search import LEAST_TOTAL_GAIN, PERFECT, Search, excess, measure_of
+from flexarm_env.identify.search import LEAST_REMOVED, LEAST_TOTAL_GAIN, PERFECT, Search, excess, measure_of
 
 #: A model whose held-out error ends below this is whole, whatever share was removed.
 WHOLE = 1.2
@@ -44,13 +47,14 @@ def diagnose(
     say(0.02, "replaying the model")
     before = score(nominal, data)
     if insufficient:
-        return _insufficient(arm, nominal, before, notes, began, seed)
+        return _insufficient(arm, nominal, data, before, notes, began, seed)
     say(0.05, "refitting the constants")
     base = best_refit(nominal, data)
     first = score(base.arm, data)
     search = Search(nominal, data, jobs, say)
     search.run(base, before, first)
-    return _conclude(arm, nominal, data, search, before, first, notes, began, seed, recordings)
+    found = _conclude(arm, nominal, data, search, before, first, notes, began, seed, recordings)
+    return replace(_with_outlook(found, search, data, say), seconds=time.perf_counter() - began)
 
 
 def _verdict(search: Search, before: Score, first: Score) -> str:
@@ -110,7 +114,16 @@ def _conclude(
     )
 
 
-def _insufficient(arm: Arm, nominal: Arm, before: Score, notes: list[str], began: float, seed: int) -> Diagnosis:
+def _with_outlook(found: Diagnosis, search: Search, data: Data, say: Progress) -> Diagnosis:
+    """Return the diagnosis with what could still hide, and what to record next where the recordings leave something open."""
+    say(0.95, "sizing what could hide")
+    smallest = {} if found.verdict == "unknown" else could_hide(search.found, data, LEAST_REMOVED)
+    hypotheses = search.open_hypotheses()
+    next_run = propose(hypotheses, data.interval) if len(hypotheses) > 1 and found.verdict == "effects" else None
+    return replace(found, smallest=smallest, next_run=next_run)
+
+
+def _insufficient(arm: Arm, nominal: Arm, data: Data, before: Score, notes: list[str], began: float, seed: int) -> Diagnosis:
     same = {"nominal": before.windows, "refitted": before.windows, "final": before.windows}
     free = {"nominal": before.free_run, "refitted": before.free_run, "final": before.free_run}
     return Diagnosis(
@@ -127,4 +140,5 @@ def _insufficient(arm: Arm, nominal: Arm, before: Score, notes: list[str], began
         notes=notes,
         seconds=time.perf_counter() - began,
         seed=seed,
+        next_run=propose({"": nominal}, data.interval),
     )

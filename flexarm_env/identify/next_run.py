@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,13 +54,19 @@ class NextRun:
         tells = "it decides" if self.difference >= TELLS else "it is the best of those tried, and it takes several runs to decide"
         return f"record {self.name}: {tells} between {' and '.join(self.separates)} ({self.difference:.2g} × the noise apart)"
 
+    def as_json(self) -> dict[str, Any]:
+        """Return what it is and why, without its samples."""
+        return {"input": self.name, "separates": list(self.separates), "difference": self.difference, "why": self.why}
+
     def recording(self) -> Recording:
         """Return the input as a recording without signals, to be saved as CSV and played."""
         return Recording.from_arrays("next-run", self.time, self.input_kind, self.command, {})
 
 
 def propose(hypotheses: Mapping[str, Arm], interval: float) -> NextRun | None:
-    """Return the input on which the closest two hypotheses differ most (T-optimality: Atkinson and Fedorov, Biometrika 62 (1975) 57).
+    """Return the input on which the closest two hypotheses differ most.
+
+    That is T-optimality (Atkinson and Fedorov, Biometrika 62 (1975) 57), over a list of inputs.
 
     Args:
         hypotheses: fitted arms that explain the recordings equally well, by effect; with one there is nothing to decide, and

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
+
+if TYPE_CHECKING:
+    from flexarm_env.identify.hiding import Hiding
+    from flexarm_env.identify.next_run import NextRun
 
 Floats = NDArray[np.float64]
 
@@ -179,6 +183,8 @@ class Diagnosis:
         nominal: the arm that came in.
         refitted: the arm with only its constants refitted.
         notes: a sentence each for a person: preflight findings, what drives an unexplained error, what would settle it.
+        smallest: the size of each effect that is not accepted up to which it could hide in these recordings.
+        next_run: the input to record next, where these leave something open.
         seconds: time taken.
         seed: of everything random.
     """
@@ -196,6 +202,8 @@ class Diagnosis:
     notes: list[str]
     seconds: float
     seed: int
+    smallest: dict[str, Hiding] = field(default_factory=dict)
+    next_run: NextRun | None = None
 
     def as_json(self) -> dict[str, Any]:
         """Return plain data for `--json`."""
@@ -216,6 +224,8 @@ class Diagnosis:
             "free_run": self.free_run,
             "constants": {name: e.as_json() for name, e in self.constants.items()},
             "notes": self.notes,
+            "smallest": {name: hidden.as_json() for name, hidden in self.smallest.items()},
+            "next_run": self.next_run.as_json() if self.next_run else None,
             "seconds": round(self.seconds, 1),
             "seed": self.seed,
         }

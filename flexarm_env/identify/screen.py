@@ -87,10 +87,14 @@ def signatures(base: Base, effect: str) -> list[Signature]:
 
     The effect's own starts are ranked by a finite secant; the best are tried at the size that it gives.
     """
-    starts = [v for start in base.problem.arm.known[effect].starts() for v in _by_sensor(base, effect, start)]
-    secants = sorted((_secant(base, effect, start) for start in starts), key=lambda s: -s.explained)
+    secants = sorted((_secant(base, effect, start) for start in starts_of(base, effect)), key=lambda s: -s.explained)
     best = max((_at_its_size(base, s) for s in secants[:STARTS_SCANNED]), key=lambda s: s.explained)
     return [best] if best.explained > LEAST_EXPLAINED else []
+
+
+def starts_of(base: Base, effect: str) -> list[dict[str, float]]:
+    """Return the values from which an effect is tried, in the scales of the data."""
+    return [values for start in base.problem.arm.known[effect].starts() for values in _by_sensor(base, effect, start)]
 
 
 def _by_sensor(base: Base, effect: str, start: dict[str, float]) -> list[dict[str, float]]:
@@ -103,7 +107,7 @@ def _by_sensor(base: Base, effect: str, start: dict[str, float]) -> list[dict[st
     return [{key: min(max(v, known.parameters[key].low), known.parameters[key].high) for key, v in values.items()}]
 
 
-def _unexplained(base: Base, residual: Floats) -> Floats:
+def unexplained(base: Base, residual: Floats) -> Floats:
     """Return the residual without what the constants could explain."""
     left: Floats = residual - base.orthonormal @ (base.orthonormal.T @ residual)
     return left
@@ -111,8 +115,8 @@ def _unexplained(base: Base, residual: Floats) -> Floats:
 
 def _secant(base: Base, effect: str, start: dict[str, float]) -> Signature:
     """What an effect would explain if its change of the residual grew in proportion to its size."""
-    change = _unexplained(base, base.problem.residual_of(base.problem.arm.with_effect(effect, **start)) - base.residual)
-    left = _unexplained(base, base.residual)
+    change = unexplained(base, base.problem.residual_of(base.problem.arm.with_effect(effect, **start)) - base.residual)
+    left = unexplained(base, base.residual)
     power, total = float(change @ change), float(left @ left)
     if power <= 1e-12 * total:
         return Signature(effect, start, 0.0, 0.0)
@@ -154,8 +158,8 @@ def _at_size(base: Base, signature: Signature, factor: float) -> Signature:
     for key, p in effect.parameters.items():
         if p.null is not None:
             values[key] = min(max(values[key] * factor, p.low), p.high)
-    left = _unexplained(base, base.problem.residual_of(base.problem.arm.with_effect(signature.effect, **values)))
-    before = _unexplained(base, base.residual)
+    left = unexplained(base, base.problem.residual_of(base.problem.arm.with_effect(signature.effect, **values)))
+    before = unexplained(base, base.residual)
     return Signature(signature.effect, values, 1.0 - float(left @ left) / float(before @ before))
 
 

@@ -81,6 +81,15 @@ class Search:
         if OFFSET in self.accepted and self.equivalent[self.accepted.index(OFFSET)] == [OFFSET] and self.best.windows <= FAR_OFF:
             self._swap_offset()
 
+    def open_hypotheses(self) -> dict[str, Arm]:
+        """Return the arms between which the recordings do not decide, by effect; the arm that is left, where they do."""
+        for names in self.equivalent:
+            rivals = {name: self.ranking[name][1] for name in names[1:] if name in self.ranking}
+            fitted = {name: refitted.arm for name, refitted in rivals.items() if refitted is not None}
+            if fitted:
+                return {names[0]: self.found.arm, **fitted}
+        return {"": self.found.arm}
+
     def _add_one(self, done: float, share: float) -> bool:
         worth = not self._is_enough(self.best)
         trials = self._screen(done, 0.6 * share)
