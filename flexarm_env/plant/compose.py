@@ -47,7 +47,9 @@ TYPES = {
     "Samples": "float64[:, ::1]",
     "Gains": "float64[:, :, ::1]",
 }
-OPTIONS: dict[str, bool | str] = {"cache": True, "nogil": True, "error_model": "numpy"}
+#: Kernels own no array: Python holds all that they are given. So none needs numba's counts of references (_nrt), which are
+#: atomic, take as long as the physics of a quiet step, and which threads would wrest from each other at every arm.
+OPTIONS: dict[str, bool | str] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False}
 NO_WRAPPERS: dict[str, bool | str] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 #: Kernels that Python calls. The others get no wrapper to be called by: half the work of compiling a small one.
