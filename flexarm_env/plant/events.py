@@ -154,7 +154,7 @@ def next_event(
         o2 = applied_offset(d, n, s, mode, body, command, w, coefficients, 2) if n[VARYING] else 0.0
         for side in range(2):
             push = 1.0 - 2.0 * side
-            budget = static_budget(d, n, s, mode, body, push)
+            budget = static_budget(d, n, s, body, push, s[HELD_HUB + body])
             if start == 0.0 and push * (o0 + dot(d, row, s, HEADER, 2 * blocks)) > budget:
                 return 0.0, BREAK, float(body)
             when = look(

@@ -101,10 +101,11 @@ def happen(
     mode = int(s[MODE])
     if kind == AGAIN:
         return
-    to_physical(d, n, s, mode, w, physical)
     if kind != GEARS:
         settle(d, n, s, int(which), command, w, physical, coefficients)
-    elif mode & GEAR_OPEN:
+        return
+    to_physical(d, n, s, mode, w, physical)
+    if mode & GEAR_OPEN:
         s[GEAR_SIDE] = which
         enter(d, n, s, mode & ~GEAR_OPEN, w, physical)
     else:
@@ -158,7 +159,7 @@ def substep(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: i
             collocate(d, n, s, mode, command, left, table, middle, table, shifts, w, trial, nodes, motion, force, coefficients)
         else:
             constant_forcing(d, n, s, command, mode, w, force)
-            evaluate_forces(d, n, s, mode, w, coefficients)
+            evaluate_forces(d, n, s, mode, mode, w, coefficients)
             add_forces(d, n, mode, w, coefficients, force)
         advance(d, c0, c1, blocks, table, end, s, w, force, n[VARYING], trial)
         when, kind, which = next_event(d, n, s, mode, command, w, trial, force, coefficients, sizes, min(blind, left), left)

@@ -38,7 +38,7 @@ class Mode:
     modal: Matrix  # (2 blocks, states): z from [q, q̇, e]
     forcing: Matrix  # (2 blocks, drivers)
     drag_forcing: Matrix  # (2 blocks, drag points)
-    hold: Matrix  # (bodies, 2 blocks): torque that friction must resist, on a held body
+    hold: Matrix  # (bodies, 2 blocks): torque that friction must resist, on a body that stands
     hold_drivers: Matrix  # (bodies, drivers)
     hold_drag: Matrix  # (bodies, drag points)
 
@@ -169,6 +169,23 @@ def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
     )
 
 
+def complete(free: Mode, held: Mode, body: int, speed: int) -> None:
+    """Write into a mode what would hold a body that stands for a moment.
+
+    Args:
+        free: the mode, in which the body is free.
+        held: the one that holds it, and the same others.
+        body: 0 hub, 1 motor.
+        speed: the row of the body's speed in [q, q̇, e], which is zero.
+    """
+    physical = free.physical.copy()
+    physical[speed] = 0.0
+    column = HELD_HUB + body
+    free.hold[body] = held.hold[body] @ held.modal @ physical + held.hold_drivers[body, column] * physical[body]
+    free.hold_drivers[body], free.hold_drag[body] = held.hold_drivers[body], held.hold_drag[body]
+    free.hold_drivers[body, column] = 0.0
+
+
 def _unlift(free: Matrix, extra: int) -> Matrix:
     """Return the matrix that picks the free coordinates, their rates and the extra states from [q, q̇, e]."""
     size, positions = free.shape
@@ -209,4 +226,4 @@ def _close_gears(structure: Structure, model: LinearModel, stiffness: Matrix, da
     drivers[:, GEAR_SIDE] += k * 0.5 * structure.gear_gap / structure.gear_ratio * windup
 
 
-__all__ = ["COMMAND", "GEAR_OPEN", "HUB_STUCK", "MOTOR_STUCK", "Mode", "blocks_of", "mode_of"]
+__all__ = ["COMMAND", "GEAR_OPEN", "HUB_STUCK", "MOTOR_STUCK", "Mode", "blocks_of", "complete", "mode_of"]

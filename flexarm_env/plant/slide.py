@@ -305,7 +305,8 @@ def keeps(
     if not stuck:
         return min(before * s[HUB_DIRECTION + body], after * s[HUB_DIRECTION + body]) > bend
     offset = dot(d, here + n[HOLD_DRIVERS] + body * n[DRIVERS], w, inputs, n[DRIVERS])
-    high, low = static_budget(d, n, s, mode, body, 1.0), static_budget(d, n, s, mode, body, -1.0)
+    angle = s[HELD_HUB + body]
+    high, low = static_budget(d, n, s, body, 1.0, angle), static_budget(d, n, s, body, -1.0, angle)
     return max(before, after) + offset + bend < high and min(before, after) + offset - bend > -low
 
 

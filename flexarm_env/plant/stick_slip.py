@@ -34,6 +34,7 @@ from flexarm_env.plant.layout import (
     STRIDE,
     TIME,
     TORQUE_LAWS,
+    VARYING,
     W_COMMAND,
     W_HELD_HUB,
     W_HELD_MOTOR,
@@ -123,11 +124,15 @@ def apply_laws(d: Numbers, n: Places, s: Numbers, mode: int, time: float, w: Num
 
 
 @njit
-def evaluate_forces(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, out: int) -> None:
-    """Write to w at `out` the forces of the laws now; after them, room for as many numbers twice over is used."""
+def evaluate_forces(d: Numbers, n: Places, s: Numbers, mode: int, held: int, w: Numbers, out: int) -> None:
+    """Write to w at `out` the forces of the laws now, if the bodies of mode `held` are; room for twice as many is used."""
     motion = out + n[BODIES] + n[POINTS]
-    read_motion(d, n, s, mode, s, HEADER, w, motion)
-    apply_laws(d, n, s, mode, s[TIME], w, motion, out)
+    if n[VARYING]:
+        read_motion(d, n, s, mode, s, HEADER, w, motion)
+    else:  # no law asks
+        for i in range(2 * n[BODIES]):
+            w[motion + i] = 0.0
+    apply_laws(d, n, s, held, s[TIME], w, motion, out)
 
 
 @njit
@@ -141,7 +146,7 @@ def applied_offset(
     d: Numbers, n: Places, s: Numbers, mode: int, body: int, command: float, w: Numbers,
     coefficients: int, order: int,
 ) -> float:  # fmt: skip
-    """Part of the torque on a held body that is not in its row on z: its coefficient of 1, t, t²/2."""
+    """Part of the torque on a body that stands that is not in its row on z: its coefficient of 1, t, t²/2."""
     here = record(n, mode)
     total = 0.0
     if order == 0:
@@ -154,9 +159,8 @@ def applied_offset(
 
 
 @njit
-def static_budget(d: Numbers, n: Places, s: Numbers, mode: int, body: int, direction: float) -> float:
-    """Static friction [Nm] that resists a push in `direction` on a held body."""
-    angle = s[HELD_HUB + body]
+def static_budget(d: Numbers, n: Places, s: Numbers, body: int, direction: float, angle: float) -> float:
+    """Static friction [Nm] that resists a push in `direction` on a body that stands at an angle."""
     at_rest = friction_budget(d, n, body, direction, 0.0, angle, s[TIME], True)
     # a body that breaks away against less than what then opposes it would be driven by its own friction
     return max(at_rest, friction_budget(d, n, body, direction, 0.0, angle, s[TIME], False))
@@ -194,15 +198,16 @@ def settle(
 
     The torque that would have to hold it is set against the budget of static friction.
     """
-    w[physical + n[COORDINATES] + body] = 0.0
-    free = int(s[MODE]) & ~(1 << body)
-    held = free | (1 << body)
-    enter(d, n, s, held, w, physical)
-    evaluate_forces(d, n, s, held, w, coefficients)
-    size = 2 * n[BLOCKS]
-    push = dot(d, record(n, held) + n[HOLD] + body * size, s, HEADER, size)
-    push += applied_offset(d, n, s, held, body, command, w, coefficients, 0)
+    mode, bit = int(s[MODE]), 1 << body
+    evaluate_forces(d, n, s, mode, mode | bit, w, coefficients)
+    push = dot(d, record(n, mode) + n[HOLD] + body * 2 * n[BLOCKS], s, HEADER, 2 * n[BLOCKS])
+    push += applied_offset(d, n, s, mode, body, command, w, coefficients, 0)
     direction = 1.0 if push >= 0.0 else -1.0
-    if abs(push) > static_budget(d, n, s, held, body, direction) or not rubs(d, n, body):
-        enter(d, n, s, free, w, physical)
+    angle = angle_of(d, n, s, mode, body, s, HEADER)
+    turns = abs(push) > static_budget(d, n, s, body, direction, angle) or not rubs(d, n, body)
+    if turns:
         s[HUB_DIRECTION + body] = direction
+    if turns == is_stuck(mode, body):
+        to_physical(d, n, s, mode, w, physical)
+        w[physical + n[COORDINATES] + body] = 0.0
+        enter(d, n, s, mode ^ bit, w, physical)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.beam import Matrix
-from flexarm_env.plant.modal import Mode, mode_of
+from flexarm_env.plant.modal import Mode, complete, mode_of
 from flexarm_env.plant.slide import DEPTH, table_size
 from flexarm_env.plant.structure import DRIVERS, GEAR_DAMPING_TIME, HUB_TORQUE, MOTOR_TORQUE, LinearModel, Structure
 
@@ -53,6 +53,10 @@ def pack(
     bodies = 2 if structure.separate_motor else 1
     count = 8 if structure.gear_gap > 0.0 else 2**bodies
     modes = [mode_of(structure, model, which) for which in range(count)]
+    for which, mode in enumerate(modes):
+        for body in range(bodies):
+            if not which >> body & 1:
+                complete(mode, modes[which | 1 << body], body, len(model.names) + body)
     varying = any(law.varies for law in active)
     points = model.drag_force.shape[1] if any(law.port == "drag" for law in active) else 0
     whole, early = split_delay(structure.input_delay, interval)

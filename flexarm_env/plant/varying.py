@@ -124,7 +124,7 @@ def collocate(
     here = record(n, mode)
     blocks, count, quantities = n[BLOCKS], n[BODIES] + n[POINTS], 2 * n[BODIES] + n[POINTS]
     new, free = nodes + 3 * count, motion + quantities
-    evaluate_forces(d, n, s, mode, w, nodes)
+    evaluate_forces(d, n, s, mode, mode, w, nodes)
     constant_forcing(d, n, s, command, mode, w, force)
     for i in range(4 * blocks):
         w[force + 2 * blocks + i] = 0.0
