@@ -7,12 +7,18 @@ import math
 from numba import njit
 
 from flexarm_env.plant.layout import HEADER, Numbers
-from flexarm_env.plant.propagate import block_response, inlined_dot
+from flexarm_env.plant.propagate import LONG_REACH, RESPONSE, advance, inlined_dot, reach_of, respond
 
 #: Shortest interval [s] that is still halved.
 SMALLEST_INTERVAL = 1e-13
 #: By how much an interval that is not halved any more grows with each one looked at.
 COARSER = 1.02
+
+
+@njit
+def copy_size(blocks: int) -> int:
+    """How many numbers a copy of the motion takes (see arrive)."""
+    return 1 + (8 + RESPONSE) * blocks
 
 
 @njit
@@ -88,33 +94,60 @@ def stray(c0: float, c1: float, length: float) -> float:
 
 
 @njit
+def start_copy(blocks: int, s: Numbers, w: Numbers, force: int, clock: int) -> None:
+    """Begin the copy of the motion in w at `clock` anew (see arrive)."""
+    w[clock] = 0.0
+    for i in range(2 * blocks):
+        w[clock + 1 + i] = s[HEADER + i]
+    for i in range(6 * blocks):
+        w[clock + 1 + 2 * blocks + i] = w[force + i]
+
+
+@njit
+def arrive(
+    d: Numbers, c0: int, c1: int, blocks: int, s: Numbers, w: Numbers, force: int, varying: int, clock: int, t: float
+) -> None:  # fmt: skip
+    """Bring the copy of the motion in w at `clock` to time t, from where it stands or, if that is long after, from s.
+
+    The copy is its time, z, and the force's coefficients from then on; behind it is room for a table.
+    """
+    size = 2 * blocks
+    z, ahead, table = clock + 1, clock + 1 + size, clock + 1 + 4 * size
+    step = t - w[clock]
+    for k in range(blocks if step < 0.0 else 0):
+        if reach_of(d[c0 + k], d[c1 + k], step) > LONG_REACH:
+            start_copy(blocks, s, w, force, clock)
+            step = t
+            break
+    if step == 0.0:
+        return
+    w[clock] = t
+    respond(d, c0, c1, blocks, step, w, table)
+    advance(d, c0, c1, blocks, w, table, w, z, w, ahead, varying, z)
+    for i in range(ahead, ahead + size if varying else ahead):
+        w[i] += step * (w[i + size] + 0.5 * step * w[i + 2 * size])
+        w[i + size] += step * w[i + 2 * size]
+
+
+@njit
 def value_at(
     d: Numbers, row: int, sign: float, o0: float, o1: float, o2: float, c0: int, c1: int, blocks: int,
-    s: Numbers, w: Numbers, force: int, varying: int, t: float,
-) -> tuple[float, float]:  # fmt: skip
-    """Return (value, rate) of sign · row · z + o₀ + o₁ t + o₂ t²/2 at time t."""
-    value, rate = 0.0, 0.0
+    s: Numbers, w: Numbers, force: int, varying: int, clock: int, t: float,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Return sign · row · z + o₀ + o₁ t + o₂ t²/2 at time t, its rate and the rate's rate; the copy is brought there."""
+    arrive(d, c0, c1, blocks, s, w, force, varying, clock, t)
+    value, rate, bend = 0.0, 0.0, 0.0
+    z, ahead = clock + 1, clock + 1 + 2 * blocks
     for k in range(blocks):
         i = 2 * k
         u, v = d[row + i], d[row + i + 1]
-        if u == 0.0 and v == 0.0:
-            continue
         a, b = d[c0 + k], d[c1 + k]
-        c, r, r0, r1, r2 = block_response(a, b, t)
-        p, q = s[HEADER + i], s[HEADER + i + 1]
-        f, g = w[force + i], w[force + i + 1]
-        new_p = c * p + r * q + f * (r + b * r0) + g * r0
-        new_q = (c - b * r) * q - a * (r * p + r0 * f) + r * g
-        if varying:
-            f1, g1 = w[force + i + 2 * blocks], w[force + i + 1 + 2 * blocks]
-            f2, g2 = w[force + i + 4 * blocks], w[force + i + 1 + 4 * blocks]
-            new_p += f1 * (r0 + b * r1) + g1 * r1 + f2 * (r1 + b * r2) + g2 * r2
-            new_q += g1 * r0 - a * r1 * f1 + g2 * r1 - a * r2 * f2
-            f += t * (f1 + 0.5 * t * f2)
-            g += t * (g1 + 0.5 * t * g2)
-        value += u * new_p + v * new_q
-        rate += u * (new_q + f) + v * (g - a * new_p - b * new_q)
-    return sign * value + o0 + t * (o1 + 0.5 * t * o2), sign * rate + o1 + t * o2
+        p, q = w[z + i], w[z + i + 1]
+        p_rate, q_rate = q + w[ahead + i], w[ahead + i + 1] - a * p - b * q
+        value += u * p + v * q
+        rate += u * p_rate + v * q_rate
+        bend += u * (q_rate + w[ahead + i + 2 * blocks]) + v * (w[ahead + i + 1 + 2 * blocks] - a * p_rate - b * q_rate)
+    return sign * value + o0 + t * (o1 + 0.5 * t * o2), sign * rate + o1 + t * o2, sign * bend + o2
 
 
 @njit
@@ -161,7 +194,7 @@ def cubic_root(width: float, value_low: float, rate_low: float, value_high: floa
 @njit
 def first_crossing(
     d: Numbers, row: int, sign: float, o0: float, o1: float, o2: float, c0: int, c1: int, blocks: int,
-    s: Numbers, w: Numbers, force: int, varying: int, start: float, end: float, at_start: float,
+    s: Numbers, w: Numbers, force: int, varying: int, clock: int, start: float, end: float, at_start: float,
     rate_start: float, at_end: float, rate_end: float, second: float, fourth: float,
 ) -> float:  # fmt: skip
     """Return when the value first falls to zero in (start, end], or −1.
@@ -177,7 +210,7 @@ def first_crossing(
         clear, monotone = proves(width, value_low, rate_low, value_high, rate_high, second, fourth)
         if not (clear or monotone) and width > smallest:
             high = 0.5 * (low + high)
-            value_high, rate_high = value_at(d, row, sign, o0, o1, o2, c0, c1, blocks, s, w, force, varying, high)
+            value_high, rate_high, _ = value_at(d, row, sign, o0, o1, o2, c0, c1, blocks, s, w, force, varying, clock, high)
             continue
         if not clear and value_high <= 0.0:
             break
@@ -186,21 +219,26 @@ def first_crossing(
         low, value_low, rate_low = high, value_high, rate_high
         high = min(high + 2.0 * width, end)
         if high < end:
-            value_high, rate_high = value_at(d, row, sign, o0, o1, o2, c0, c1, blocks, s, w, force, varying, high)
+            value_high, rate_high, _ = value_at(d, row, sign, o0, o1, o2, c0, c1, blocks, s, w, force, varying, clock, high)
         else:
             value_high, rate_high = at_end, rate_end
     if value_low <= 0.0:
         return low
     t = low + cubic_root(high - low, value_low, rate_low, value_high, rate_high)
-    for _ in range(60):  # Newton's method, kept between the ends
-        value, rate = value_at(d, row, sign, o0, o1, o2, c0, c1, blocks, s, w, force, varying, t)
+    third = math.sqrt(second * fourth)  # of sums of squares, so that it is a bound, too
+    for _ in range(60):  # Halley's method, kept between the ends
+        value, rate, bend = value_at(d, row, sign, o0, o1, o2, c0, c1, blocks, s, w, force, varying, clock, t)
         if value > 0.0:
             low = t
         else:
             high = t
-        new = t - value / rate if rate < 0.0 else 0.5 * (low + high)
-        left_over = (new - t) ** 2 * second  # twice the rate times the error that Newton's step leaves
-        if left_over <= -1e-15 * end * rate or abs(new - t) <= 1e-15 * high or high - low <= 1e-16:
+        new = 0.5 * (low + high)
+        if rate < 0.0:
+            new = t - value / (rate - 0.5 * bend * value / rate if abs(bend * value) < rate * rate else rate)
+        step = abs(new - t)
+        left_over = step**3 * (1.5 * second * second - third * rate)  # 6 times rate² times the error after the step
+        sure = rate < 0.0 and left_over <= 6e-15 * end * rate * rate
+        if sure or step <= 1e-15 * high or high - low <= 1e-16:
             return min(max(new, low), high)
         t = new if low < new < high else 0.5 * (low + high)
     return t

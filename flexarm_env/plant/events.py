@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from numba import njit
 
-from flexarm_env.plant.crossing import amplitudes, curvature_bound, first_crossing, rate_of, value_at
+from flexarm_env.plant.crossing import (
+    amplitudes,
+    arrive,
+    copy_size,
+    curvature_bound,
+    first_crossing,
+    rate_of,
+    start_copy,
+    value_at,
+)
 from flexarm_env.plant.layout import (
     BLOCKS,
     BODIES,
@@ -37,6 +46,12 @@ NOTHING, STOP, BREAK, GEARS, AGAIN = 0, 1, 2, 3, 4
 
 
 @njit
+def found_at(size: int, blocks: int) -> int:
+    """Where next_event leaves the state at the event in w: behind the amplitudes at `size` and a copy of the motion."""
+    return size + 2 * blocks + copy_size(blocks)
+
+
+@njit
 def look(
     d: Numbers, n: Places, mode: int, row: int, weight: int, sign: float, o0: float, o1: float,
     o2: float, s: Numbers, w: Numbers, trial: int, force: int, size: int, start: float, end: float,
@@ -44,32 +59,34 @@ def look(
 ) -> float:  # fmt: skip
     """Return when sign · (row · z) + o₀ + o₁ t + o₂ t²/2 falls to zero within (start, min(end, best)], or `best`.
 
-    z is the state now; the one at `end` stands in w at `trial`.
+    z is the state now; the one at `end` stands in w at `trial`. The state then is left behind the copy after `size`.
     """
     here = record(n, mode)
     c0, c1, blocks = here + n[C0], here + n[C1], n[BLOCKS]
     bound = curvature_bound(d, row, weight, blocks, w, size, force, n[VARYING], end) + abs(o2)
     fourth = dot(d, weight, w, size + blocks, blocks)
     value = sign * dot(d, row, w, trial, 2 * blocks) + o0 + end * (o1 + 0.5 * end * o2)
-    slope, before = 0.0, 0.0
-    if start > 0.0:
-        before, slope = value_at(d, row, sign, o0, o1, o2, c0, c1, blocks, s, w, force, n[VARYING], start)
-        if before <= 0.0:
-            return min(best, start)
+    bend = 0.125 * end * end * bound
+    if value > bend and sign * dot(d, row, s, HEADER, 2 * blocks) + o0 > bend:
+        return best
+    clock = size + 2 * blocks
+    before, slope, _ = value_at(d, row, sign, o0, o1, o2, c0, c1, blocks, s, w, force, n[VARYING], clock, start)
+    if start > 0.0 and before <= 0.0:
+        root = start
+    elif end <= start:
+        return best
     else:
-        before = sign * dot(d, row, s, HEADER, 2 * blocks) + o0
-    if end <= start:
+        rate = sign * rate_of(d, row, c0, c1, blocks, w, trial, w, force, end) + o1 + end * o2
+        root = first_crossing(
+            d, row, sign, o0, o1, o2, c0, c1, blocks, s, w, force, n[VARYING], clock, start, end,
+            before, slope, value, rate, bound, fourth,
+        )  # fmt: skip
+    if not 0.0 <= root < best:
         return best
-    if before > 0.125 * end * end * bound and value > 0.125 * end * end * bound:
-        return best
-    if start == 0.0:
-        slope = sign * rate_of(d, row, c0, c1, blocks, s, HEADER, w, force, 0.0) + o1
-    rate = sign * rate_of(d, row, c0, c1, blocks, w, trial, w, force, end) + o1 + end * o2
-    root = first_crossing(
-        d, row, sign, o0, o1, o2, c0, c1, blocks, s, w, force, n[VARYING], start, end,
-        before, slope, value, rate, bound, fourth,
-    )  # fmt: skip
-    return root if 0.0 <= root < best else best
+    arrive(d, c0, c1, blocks, s, w, force, n[VARYING], clock, root)
+    for i in range(2 * blocks):
+        w[found_at(size, blocks) + i] = w[clock + 1 + i]
+    return root
 
 
 @njit
@@ -133,10 +150,14 @@ def next_event(
     d: Numbers, n: Places, s: Numbers, mode: int, command: float, w: Numbers, trial: int, force: int,
     coefficients: int, size: int, start: float, end: float,
 ) -> tuple[float, int, float]:  # fmt: skip
-    """Return (time, kind, body or side) of the first event within (start, end]; kind NOTHING if there is none."""
+    """Return (time, kind, body or side) of the first event within (start, end]; kind NOTHING if there is none.
+
+    If its time is not 0, the state then is left in w (see found_at).
+    """
     here = record(n, mode)
     blocks = n[BLOCKS]
     amplitudes(d, here + n[C0], here + n[C1], blocks, s, w, force, n[VARYING], end, size)
+    start_copy(blocks, s, w, force, size + 2 * blocks)
     best, kind, which = 2.0 * end + 1.0, NOTHING, 0.0
     for body in range(n[BODIES]):
         if not rubs(d, n, body):

@@ -6,7 +6,8 @@ import math
 
 from numba import njit
 
-from flexarm_env.plant.events import AGAIN, GEAR_OPEN, GEARS, NOTHING, next_event
+from flexarm_env.plant.crossing import copy_size
+from flexarm_env.plant.events import AGAIN, GEAR_OPEN, GEARS, NOTHING, found_at, next_event
 from flexarm_env.plant.glide import glide
 from flexarm_env.plant.laws import drive_law, sensor_law
 from flexarm_env.plant.layout import (
@@ -83,7 +84,7 @@ RUN_AWAY = 1e9
 def substep_scratch(n: Places) -> int:
     """How many numbers of scratch a substep needs."""
     count = n[BODIES] + n[POINTS]
-    return 26 * n[BLOCKS] + n[STATES] + (14 + 12 * count) * count + 64
+    return 26 * n[BLOCKS] + copy_size(n[BLOCKS]) + n[STATES] + (14 + 12 * count) * count + 64
 
 
 @njit
@@ -134,7 +135,8 @@ def substep(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: i
     nodes = coefficients + 3 * count
     motion = nodes + 5 * count
     sizes = motion + 6 * count
-    own = sizes + 2 * blocks
+    found = found_at(sizes, blocks)
+    own = found + size
     own_reach = own + 2 * RESPONSE * blocks
     physical = own_reach + (12 * count * count if n[VARYING] else 0)
     shift = (2 * n[BODIES] + n[POINTS]) * 3 * count
@@ -161,16 +163,12 @@ def substep(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: i
             constant_forcing(d, n, s, command, mode, w, force)
             evaluate_forces(d, n, s, mode, mode, w, coefficients)
             add_forces(d, n, mode, w, coefficients, force)
-        advance(d, c0, c1, blocks, table, end, s, w, force, n[VARYING], trial)
+        advance(d, c0, c1, blocks, table, end, s, HEADER, w, force, n[VARYING], trial)
         when, kind, which = next_event(d, n, s, mode, command, w, trial, force, coefficients, sizes, min(blind, left), left)
-        if kind == NOTHING:
-            when = left
-        elif when > 0.0:
-            respond(d, c0, c1, blocks, when, w, end if not known else own)
-            advance(d, c0, c1, blocks, w, end if not known else own, s, w, force, n[VARYING], trial)
+        when = left if kind == NOTHING else when
         if when > 0.0:
             for i in range(size):
-                s[HEADER + i] = w[trial + i]
+                s[HEADER + i] = w[(trial if kind == NOTHING else found) + i]
             s[TIME] += when
         if kind == NOTHING:
             return

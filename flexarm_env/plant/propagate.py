@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numba import njit
 
-from flexarm_env.plant.layout import HEADER, Numbers
+from flexarm_env.plant.layout import Numbers
 
 #: 1/k!, for the series of short times, and how many terms it needs below either reach of |c₀| t² + |c₁| t.
 INVERSE_FACTORIALS = np.array([1.0 / math.factorial(k) for k in range(18)])
@@ -40,6 +40,12 @@ def series(d0: float, d1: float, terms: int) -> tuple[float, float, float, float
     return 1.0 - d0 * r0, 1.0 - d1 * r0 - d0 * r1, r0, r1, r2
 
 
+@njit(forceinline=True)
+def reach_of(c0: float, c1: float, t: float) -> float:
+    """Return how far a block gets within t [s] from where it would without its stiffness and damping: series' argument."""
+    return abs(c0) * t * t + abs(c1 * t)
+
+
 @njit
 def block_response(c0: float, c1: float, t: float) -> tuple[float, float, float, float, float]:
     """Return (C, S, R0, R1, R2) of one block after time t [s]: the series of a short part of t, doubled until it is t.
@@ -47,10 +53,10 @@ def block_response(c0: float, c1: float, t: float) -> tuple[float, float, float,
     There are no cases: it holds for any damping, and takes no longer than one sine, cosine and exponential would.
     """
     doublings = 0
-    while abs(c0) * t * t + abs(c1) * t > LONG_REACH:
+    while reach_of(c0, c1, t) > LONG_REACH:
         t *= 0.5
         doublings += 1
-    if abs(c0) * t * t + abs(c1) * t > SHORT_REACH:
+    if reach_of(c0, c1, t) > SHORT_REACH:
         c, s, r0, r1, r2 = series(c0 * t * t, c1 * t, LONG_TERMS)
     else:
         c, s, r0, r1, r2 = series(c0 * t * t, c1 * t, SHORT_TERMS)
@@ -75,15 +81,15 @@ def respond(d: Numbers, c0: int, c1: int, blocks: int, t: float, table: Numbers,
 
 @njit
 def advance(
-    d: Numbers, c0: int, c1: int, blocks: int, table: Numbers, at: int, s: Numbers, w: Numbers,
+    d: Numbers, c0: int, c1: int, blocks: int, table: Numbers, at: int, z: Numbers, start: int, w: Numbers,
     force: int, varying: int, out: int,
 ) -> None:  # fmt: skip
-    """Write to w at `out` where z gets to by the time of the table at `at`."""
+    """Write to w at `out`, which may be its own place, where z at `start` gets to by the time of the table at `at`."""
     for k in range(blocks):
         j = at + RESPONSE * k
         c, r, r0 = table[j], table[j + 1], table[j + 2]
         a, b = d[c0 + k], d[c1 + k]
-        p, q = s[HEADER + 2 * k], s[HEADER + 2 * k + 1]
+        p, q = z[start + 2 * k], z[start + 2 * k + 1]
         i = force + 2 * k
         f, g = w[i], w[i + 1]
         new_p = c * p + r * q + f * (r + b * r0) + g * r0

@@ -16,6 +16,7 @@ from flexarm_env.plant.layout import (
     FORCE_COLUMNS,
     FORCING,
     GEAR_SIDE,
+    HEADER,
     HELD_HUB,
     HELD_MOTOR,
     POINTS,
@@ -129,7 +130,7 @@ def collocate(
     for i in range(4 * blocks):
         w[force + 2 * blocks + i] = 0.0
     for half in range(2):
-        advance(d, here + n[C0], here + n[C1], blocks, table, at + half * RESPONSE * blocks, s, w, force, 0, trial)
+        advance(d, here + n[C0], here + n[C1], blocks, table, at + half * RESPONSE * blocks, s, HEADER, w, force, 0, trial)
         read_motion(d, n, s, mode, w, trial, w, free + half * quantities)
     for j in range(count):
         w[nodes + count + j] = w[nodes + 2 * count + j] = w[nodes + j]
