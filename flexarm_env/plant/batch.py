@@ -18,7 +18,7 @@ from flexarm_env.plant.layout import (
     Numbers,
     Places,
 )
-from flexarm_env.plant.propagate import dot
+from flexarm_env.plant.propagate import inlined_dot
 from flexarm_env.plant.stick_slip import is_stuck, record
 
 #: Columns of the truth after the readings: hub angle and speed, tip deflection, whether the hub sticks, whether all is lost.
@@ -28,16 +28,16 @@ TRUTH = 5
 AT_CONSTANTS, CONSTANTS_EACH, AT_STATES, STATE_EACH, AT_COMMANDS, AT_PUSHES, AT_LOOKS, AT_SCRATCH, SCRATCH_EACH = range(9)
 
 
-@njit
+@njit(forceinline=True)
 def write_truth(d: Numbers, n: Places, s: Numbers, out: Numbers, at: int) -> None:
     """Write hub angle [rad], hub speed [rad/s], tip deflection [m] and whether the hub sticks, to out from `at` on."""
     mode = int(s[MODE])
     size, count = 2 * n[BLOCKS], n[COORDINATES]
     rows = record(n, mode) + n[PHYSICAL]
     stuck = is_stuck(mode, 0)
-    out[at] = s[HELD_HUB] if stuck else dot(d, rows, s, HEADER, size)
-    out[at + 1] = 0.0 if stuck else dot(d, rows + count * size, s, HEADER, size)
-    out[at + 2] = dot(d, rows + (count - 2) * size, s, HEADER, size) if count > n[BODIES] else 0.0
+    out[at] = s[HELD_HUB] if stuck else inlined_dot(d, rows, s, HEADER, size)
+    out[at + 1] = 0.0 if stuck else inlined_dot(d, rows + count * size, s, HEADER, size)
+    out[at + 2] = inlined_dot(d, rows + (count - 2) * size, s, HEADER, size) if count > n[BODIES] else 0.0
     out[at + 3] = 1.0 if stuck else 0.0
     out[at + 4] = 1.0 if is_lost(n, s) else 0.0
 

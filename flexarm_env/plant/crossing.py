@@ -21,7 +21,7 @@ def copy_size(blocks: int) -> int:
     return 1 + (8 + RESPONSE) * blocks
 
 
-@njit
+@njit(forceinline=True)
 def rate_of(
     d: Numbers, row: int, c0: int, c1: int, blocks: int, z: Numbers, at: int, w: Numbers, force: int,
     t: float,
@@ -37,7 +37,7 @@ def rate_of(
     return total
 
 
-@njit
+@njit(forceinline=True)
 def amplitudes(
     d: Numbers, c0: int, c1: int, blocks: int, s: Numbers, w: Numbers, force: int, varying: int,
     t: float, out: int,
@@ -68,7 +68,7 @@ def amplitudes(
         w[out + blocks + k] = fastest * fastest * size + further
 
 
-@njit
+@njit(forceinline=True)
 def curvature_bound(
     d: Numbers, row: int, weight: int, blocks: int, w: Numbers, size: int, force: int, varying: int,
     t: float,
@@ -93,7 +93,7 @@ def stray(c0: float, c1: float, length: float) -> float:
     return largest * math.exp(max(-c1, 0.0) * length)
 
 
-@njit
+@njit(forceinline=True)
 def start_copy(blocks: int, s: Numbers, w: Numbers, force: int, clock: int) -> None:
     """Begin the copy of the motion in w at `clock` anew (see arrive)."""
     w[clock] = 0.0
@@ -103,7 +103,7 @@ def start_copy(blocks: int, s: Numbers, w: Numbers, force: int, clock: int) -> N
         w[clock + 1 + 2 * blocks + i] = w[force + i]
 
 
-@njit
+@njit(forceinline=True)
 def arrive(
     d: Numbers, c0: int, c1: int, blocks: int, s: Numbers, w: Numbers, force: int, varying: int, clock: int, t: float
 ) -> None:  # fmt: skip
@@ -150,7 +150,7 @@ def value_at(
     return sign * value + o0 + t * (o1 + 0.5 * t * o2), sign * rate + o1 + t * o2, sign * bend + o2
 
 
-@njit
+@njit(forceinline=True)
 def proves(
     width: float, value_low: float, rate_low: float, value_high: float, rate_high: float,
     second: float, fourth: float,
@@ -174,7 +174,7 @@ def proves(
     return False, rising or max(rate_low, middle, rate_high) < -stray
 
 
-@njit
+@njit(forceinline=True)
 def cubic_root(width: float, value_low: float, rate_low: float, value_high: float, rate_high: float) -> float:
     """Return where the cubic through both ends, above zero at 0 and below at `width`, is about zero."""
     slope = (value_high - value_low) / width
@@ -191,7 +191,7 @@ def cubic_root(width: float, value_low: float, rate_low: float, value_high: floa
     return t
 
 
-@njit
+@njit(forceinline=True)
 def first_crossing(
     d: Numbers, row: int, sign: float, o0: float, o1: float, o2: float, c0: int, c1: int, blocks: int,
     s: Numbers, w: Numbers, force: int, varying: int, clock: int, start: float, end: float, at_start: float,

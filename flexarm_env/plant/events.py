@@ -145,7 +145,7 @@ def look_at_overlap(
     )  # fmt: skip
 
 
-@njit
+@njit(forceinline=True)
 def next_event(
     d: Numbers, n: Places, s: Numbers, mode: int, command: float, w: Numbers, trial: int, force: int,
     coefficients: int, size: int, start: float, end: float,

@@ -118,7 +118,7 @@ def limits(
     return torque, 0.0, 0.0 if direction > 0.0 else -math.inf, math.inf if direction > 0.0 else 0.0
 
 
-@njit
+@njit(forceinline=True)
 def glide(d: Numbers, n: Places, s: Numbers, command: float, length: float, slot: int, w: Numbers) -> bool:
     """Move the arm on by a whole tabulated substep and return True, if it is sure that no event falls in it.
 

@@ -93,7 +93,7 @@ def scratch_size(n: Places) -> int:
     return substep_scratch(n) + (table_size(n) if n[VARYING] else 0)
 
 
-@njit
+@njit(forceinline=True)
 def happen(
     d: Numbers, n: Places, s: Numbers, kind: int, which: float, command: float, w: Numbers,
     physical: int, coefficients: int,
@@ -114,7 +114,7 @@ def happen(
         enter(d, n, s, mode | GEAR_OPEN, w, physical)
 
 
-@njit
+@njit(forceinline=True)
 def face_motion(d: Numbers, n: Places, s: Numbers, mode: int) -> None:
     """Let friction oppose the motion of a state that was set or corrected from outside."""
     size = 2 * n[BLOCKS]
@@ -177,7 +177,7 @@ def substep(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: i
         blind = max(2.0 * blind, FIRST_BLIND_TIME)
 
 
-@njit
+@njit(forceinline=True)
 def let_through(d: Numbers, n: Places, s: Numbers, command: float) -> float:
     """Return what the drive makes of a command, and remember it."""
     place = n[DRIVE_LAWS]
@@ -220,7 +220,7 @@ def walk(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int,
             level -= 1
 
 
-@njit
+@njit(forceinline=True)
 def move(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int, w: Numbers) -> None:
     """Move the arm on by t [s] under a held command; `slot` names the tables for exactly t."""
     if n[VARYING] and not n[POINTS]:
@@ -268,7 +268,7 @@ def show(d: Numbers, n: Places, s: Numbers, out: Numbers, at: int) -> None:
         out[i] = sensor_law(n[law], out[i], angle, motor_angle, s[TIME], d, n[law + 1])
 
 
-@njit
+@njit(forceinline=True)
 def measure(d: Numbers, n: Places, s: Numbers, out: Numbers, at: int) -> None:
     """Write the readings, without noise, to out from `at` on."""
     here = record(n, int(s[MODE]))
@@ -323,7 +323,7 @@ def feed_back(
                 s[HELD_HUB + body] += gains[mode, size + body, j] * error
 
 
-@njit
+@njit(forceinline=True)
 def is_lost(n: Places, s: Numbers) -> bool:
     """Whether the state has run away: a feedback that does not suit the arm, or values beyond reason."""
     total = 0.0

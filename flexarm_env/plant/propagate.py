@@ -24,7 +24,7 @@ LONG_REACH, LONG_TERMS = 0.125, 12
 RESPONSE = 5
 
 
-@njit
+@njit(forceinline=True)
 def series(d0: float, d1: float, terms: int) -> tuple[float, float, float, float, float]:
     """Return (C, S/t, R0/t², R1/t³, R2/t⁴) of one block from d₀ = c₀ t², d₁ = c₁ t.
 
@@ -46,7 +46,7 @@ def reach_of(c0: float, c1: float, t: float) -> float:
     return abs(c0) * t * t + abs(c1 * t)
 
 
-@njit
+@njit(forceinline=True)
 def block_response(c0: float, c1: float, t: float) -> tuple[float, float, float, float, float]:
     """Return (C, S, R0, R1, R2) of one block after time t [s]: the series of a short part of t, doubled until it is t.
 
@@ -70,7 +70,7 @@ def block_response(c0: float, c1: float, t: float) -> tuple[float, float, float,
     return c, s, r0, r1, r2
 
 
-@njit
+@njit(forceinline=True)
 def respond(d: Numbers, c0: int, c1: int, blocks: int, t: float, table: Numbers, at: int) -> None:
     """Fill table from `at` on with the responses of all blocks after t."""
     for k in range(blocks):
@@ -79,7 +79,7 @@ def respond(d: Numbers, c0: int, c1: int, blocks: int, t: float, table: Numbers,
         table[i], table[i + 1], table[i + 2], table[i + 3], table[i + 4] = c, s, r0, r1, r2
 
 
-@njit
+@njit(forceinline=True)
 def advance(
     d: Numbers, c0: int, c1: int, blocks: int, table: Numbers, at: int, z: Numbers, start: int, w: Numbers,
     force: int, varying: int, out: int,

@@ -74,7 +74,7 @@ def friction_budget(
     return max(total, 0.0)
 
 
-@njit
+@njit(forceinline=True)
 def effect_torque(d: Numbers, n: Places, body: int, angle: float, speed: float, time: float) -> float:
     """Non-linear torque [Nm] of the effects; all of it acts on the hub."""
     total = 0.0
@@ -103,7 +103,7 @@ def read_motion(d: Numbers, n: Places, s: Numbers, mode: int, z: Numbers, at: in
         w[out + 2 * bodies + point] = dot(d, here + n[DRAG_VELOCITY] + point * size, z, at, size)
 
 
-@njit
+@njit(forceinline=True)
 def apply_laws(d: Numbers, n: Places, s: Numbers, mode: int, time: float, w: Numbers, motion: int, out: int) -> None:
     """Write to w at `out` the torque of friction and effects on each body, then the drag at each point of the beam."""
     bodies = n[BODIES]
@@ -123,7 +123,7 @@ def apply_laws(d: Numbers, n: Places, s: Numbers, mode: int, time: float, w: Num
         w[out + bodies + point] = total
 
 
-@njit
+@njit(forceinline=True)
 def evaluate_forces(d: Numbers, n: Places, s: Numbers, mode: int, held: int, w: Numbers, out: int) -> None:
     """Write to w at `out` the forces of the laws now, if the bodies of mode `held` are; room for twice as many is used."""
     motion = out + n[BODIES] + n[POINTS]
@@ -189,7 +189,7 @@ def enter(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, physical: in
         s[HEADER + i] = dot(d, here + n[MODAL] + i * n[STATES], w, physical, n[STATES])
 
 
-@njit
+@njit(forceinline=True)
 def settle(
     d: Numbers, n: Places, s: Numbers, body: int, command: float, w: Numbers, physical: int,
     coefficients: int,

@@ -38,7 +38,7 @@ from flexarm_env.plant.stick_slip import apply_laws, evaluate_forces, read_motio
 SWEEPS = 15
 
 
-@njit
+@njit(forceinline=True)
 def constant_forcing(
     d: Numbers, n: Places, s: Numbers, command: float, mode: int, w: Numbers, force: int,
 ) -> None:  # fmt: skip
@@ -53,7 +53,7 @@ def constant_forcing(
         row += n[DRIVERS]
 
 
-@njit
+@njit(forceinline=True)
 def add_forces(d: Numbers, n: Places, mode: int, w: Numbers, coefficients: int, force: int) -> None:
     """Add torque and drag, coefficients of 1, t, t²/2, to the force on the blocks."""
     count, size = n[BODIES] + n[POINTS], 2 * n[BLOCKS]
