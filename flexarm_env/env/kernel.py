@@ -3,6 +3,7 @@
 The functions stand alone in this file, so that numba's cache, which sees edits in this file only, is never out of date.
 Random numbers are hashes of a counter (Steele, Lea, Flood, OOPSLA 2014, SplitMix64): a draw depends on its key and its
 place alone, not on how many arms there are or which of them ended when.
+They count no references (_nrt), for the reasons given in plant/compose.py.
 """
 
 from __future__ import annotations
@@ -85,7 +86,7 @@ def key_of(seed, name, episode):
     return mixed(mixed(mixed(np.uint64(seed) + GOLDEN) + np.uint64(name)) + np.uint64(episode) * GOLDEN)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def normal(stream, counter):
     """Return a normal number of variance 1 for a stream's own key and a place in it.
 
@@ -122,7 +123,7 @@ def _beyond(bits, share):
         share = float(bits >> np.uint64(11)) * 2.0**-53
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
 def after_step(arena, places, keys, observations, first, last):
     """Judge arms first to last - 1 after their physics, show them, and draw what disturbs their next sample.
 
@@ -141,7 +142,7 @@ def after_step(arena, places, keys, observations, first, last):
         arena[places[AT_PUSHES] + arm] = push(arena, places[AT_SETTINGS], own, keys[arm])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
 def after_reset(arena, places, keys, observations, arm):
     """Show an arm at the start of an episode, and draw what disturbs its first sample."""
     own = places[AT_OWN] + arm * COLUMNS
@@ -149,7 +150,7 @@ def after_reset(arena, places, keys, observations, arm):
     arena[places[AT_PUSHES] + arm] = push(arena, places[AT_SETTINGS], own, keys[arm])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
 def push(a, settings, own, key):
     """Return what a tap on the hub adds to the command of the next sample; taps start at random."""
     if a[own + TAP_LEFT] <= 0.0 and a[settings + TAP_CHANCE] > 0.0:
@@ -163,7 +164,7 @@ def push(a, settings, own, key):
     return a[own + TAP] * a[settings + PER_TORQUE]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
 def sense(a, places, own, key, observations, arm):
     """Write what the sensors of an arm show, over their scales, then the target, to observations (arms, signals + 1).
 
@@ -189,7 +190,7 @@ def sense(a, places, own, key, observations, arm):
     observations[arm, signals] = a[own + TARGET] / a[settings + TARGET_SCALE]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _late(a, places, sensor, sample, arm, j):
     """Return what sensor j of an arm measured some samples ago, and keep what it measures now."""
     signals, depth = places[SIGNALS], places[DEPTH]
@@ -200,7 +201,7 @@ def _late(a, places, sensor, sample, arm, j):
     return quantity + a[sensor + SHARE_OF_DELAY] * (before - quantity)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _dropped(a, settings, own, key, sample, signals):
     """Return which sensor of an arm has dropped out, or -1."""
     may = a[own + DROP_LEFT] <= 0.0 and sample > 0
@@ -213,7 +214,7 @@ def _dropped(a, settings, own, key, sample, signals):
     return int(a[own + DROPPED])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
 def judge(a, places, own, arm):
     """Move the target on and write the reward, its terms and whether the episode ends into the arm's own numbers."""
     settings, command = places[AT_SETTINGS], a[places[AT_ASKED] + arm]
