@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from flexarm_env.linear import LinearArm
     from flexarm_env.plant.plant import Plant
     from flexarm_env.plant.structure import Structure
+    from flexarm_env.plant.tables import ActiveLaw
 
 Values = Mapping[str, float]
 
@@ -174,9 +175,8 @@ class Arm:
         """Effects that are not absent, with their values, in the order of their names."""
         return [(n, self.effects[n]) for n in sorted(self.effects) if not self.known[n].absent(self.effects[n])]
 
-    def plant(self, interval: float) -> Plant:
-        """Return the compiled plant of this arm, sampled every `interval` seconds."""
-        from flexarm_env.plant.plant import Plant
+    def laws(self) -> list[ActiveLaw]:
+        """Return the laws of friction, torque, drag and drive that act."""
         from flexarm_env.plant.tables import ActiveLaw
 
         active = []
@@ -188,7 +188,13 @@ class Arm:
                     parameters = tuple(values[key] for key in effect.parameters)
                     share = self.constants["drive"][effect.motor_share] if effect.motor_share else 0.0
                     active.append(ActiveLaw(self.known.kinds[name, port], port, parameters, varies, share, effect.reads))
-        return Plant(self.structure(), active, self.known.laws, interval)
+        return active
+
+    def plant(self, interval: float) -> Plant:
+        """Return the compiled plant of this arm, sampled every `interval` seconds."""
+        from flexarm_env.plant.plant import Plant
+
+        return Plant(self.structure(), self.laws(), self.known.laws, interval)
 
     def linearise(self, mode: str, interval: float) -> LinearArm:
         """Return the state space of the arm in a mode, "moving" or "stuck", sampled every `interval` seconds."""

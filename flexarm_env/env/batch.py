@@ -177,6 +177,10 @@ class Batch:
                 self.episodes[arm] += 1
             else:
                 self.seeds[arm], self.episodes[arm] = np.uint64(seed % 2**64), 0
+        if self.setup.variation.ranges and len(arms):
+            drawn = [self.arm_of(int(arm)) for arm in arms]
+            self.constants[arms] = self.plant.constants_of([arm.structure() for arm in drawn], [arm.laws() for arm in drawn])
+        for arm in arms:
             self._start(int(arm))
 
     def _start(self, arm: int) -> None:
@@ -184,8 +188,7 @@ class Batch:
         self.keys[arm] = self._key(arm, "sensors")
         plant = self.plant
         if setup.variation.ranges:
-            plant = self.arm_of(arm).plant(1.0 / setup.rate)
-            self.constants[arm] = plant.constants
+            plant.constants[:] = self.constants[arm]
         if setup.variation.ranges or self.first_state is None:
             self.first_state = self._run_up(plant)
         self.states[arm] = self.first_state

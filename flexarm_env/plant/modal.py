@@ -1,17 +1,13 @@
-"""Block-diagonal form of the linear part, one for each way in which hub, motor and gears can be held.
-
-A block is (p, P) with ṗ = P + f₁, Ṗ = −c₀ p − c₁ P + f₂: a vibration mode, or a real eigenvalue together with its
-integral. It stays smooth where a rigid mode loses its damping and an eigenvector basis would break down.
-"""
+"""Block-diagonal form of the linear part, one for each way in which hub, motor and gears can be held."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from flexarm_env.plant.beam import Matrix
+from flexarm_env.plant.beam import Matrix, spread_out
+from flexarm_env.plant.blocks import blocks_of
 from flexarm_env.plant.structure import (
     COMMAND,
     DRIVERS,
@@ -24,12 +20,14 @@ from flexarm_env.plant.structure import (
 )
 
 HUB_STUCK, MOTOR_STUCK, GEAR_OPEN = 1, 2, 4
-Places = NDArray[np.intp]
 
 
 @dataclass
 class Mode:
-    """The arm while a given set of bodies is held; blocks as (c0, c1), rows on the block coordinates z."""
+    """The arm while a given set of bodies is held; blocks as (c0, c1), rows on the block coordinates z.
+
+    Of stacked arms (see plant/structure.py) all but `held` have one more axis in front, the arms.
+    """
 
     c0: Matrix  # (blocks,)
     c1: Matrix  # (blocks,)
@@ -43,65 +41,6 @@ class Mode:
     hold_drag: Matrix  # (bodies, drag points)
 
 
-def blocks_of(dynamics: Matrix) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-    """Return (c0, c1, V, W) with ẋ = A x, x = V z and z = W x, z in blocks.
-
-    Args:
-        dynamics: A, (states, states) [1/s].
-    """
-    size = dynamics.shape[0]
-    if not size:  # a rigid arm that is held
-        return np.zeros(0), np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0))
-    moves = dynamics.any(axis=0)
-    cyclic, inner = np.flatnonzero(~moves), np.flatnonzero(moves)
-    values, vectors = np.linalg.eig(dynamics[inner[:, None], inner])
-    upper = values.imag >= 0.0
-    values, vectors = values[upper], vectors[:, upper]
-    real = np.flatnonzero(values.imag == 0.0)
-    vibrating = np.flatnonzero(values.imag != 0.0)
-    c0, c1 = np.zeros(len(values)), -values.real
-    v = np.zeros((size, 2 * len(values)))
-    if len(real):
-        found = vectors[:, real].real
-        v[inner[:, None], 2 * real + 1] = found
-        v[cyclic[:, None], 2 * real] = dynamics[cyclic[:, None], inner] @ found
-    rates = dynamics[cyclic[:, None], inner]
-    for k in vibrating:
-        value, whole = values[k], np.zeros(size, complex)
-        whole[inner] = vectors[:, k]
-        whole[cyclic] = rates @ vectors[:, k] / value
-        largest = whole[np.abs(whole[: size // 2 + 1]).argmax()]
-        whole *= largest.conjugate() / abs(largest) ** 2
-        v[:, 2 * k + 1] = whole.imag / value.imag
-        v[:, 2 * k] = whole.real - value.real * whole.imag / value.imag
-        c0[k], c1[k] = abs(value) ** 2, -2.0 * value.real
-    cover = v[cyclic[:, None], 2 * real]
-    if len(cyclic) and (len(real) < len(cyclic) or _rank(cover) < len(cyclic)):
-        # a place that no real mode reaches keeps a block of its own, which never moves
-        own = np.zeros((size, 2 * len(cyclic)))
-        own[cyclic, 2 * np.arange(len(cyclic))] = 1.0
-        real = np.concatenate([real, len(c0) + np.arange(len(cyclic))])
-        v, c0, c1 = np.hstack([v, own]), np.append(c0, np.zeros(len(cyclic))), np.append(c1, np.zeros(len(cyclic)))
-        cover = v[cyclic[:, None], 2 * real]
-    return c0, c1, v, _inverse(v, real, vibrating, cyclic, inner, cover)
-
-
-def _rank(matrix: Matrix) -> int:
-    return int(matrix.any()) if len(matrix) == 1 else int(np.linalg.matrix_rank(matrix))
-
-
-def _inverse(v: Matrix, real: Places, vibrating: Places, cyclic: Places, inner: Places, cover: Matrix) -> Matrix:
-    w = np.zeros((v.shape[1], v.shape[0]))
-    moving = real[v[:, 2 * real + 1].any(axis=0)]
-    used = np.sort(np.concatenate([2 * moving + 1, 2 * vibrating, 2 * vibrating + 1]))
-    w[used[:, None], inner] = np.linalg.inv(v[inner[:, None], used])
-    if len(cyclic):
-        spread = cover.T / np.sum(cover**2) if len(cyclic) == 1 else np.linalg.pinv(cover)
-        w[2 * real[:, None], cyclic] = spread
-        w[2 * real[:, None], inner] = -spread @ (v[cyclic[:, None], used] @ w[used[:, None], inner])
-    return w
-
-
 def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
     """Decompose the arm in one mode.
 
@@ -112,33 +51,33 @@ def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
     """
     size = len(model.names)
     free, held = _free_coordinates(model.names, which)
-    stiffness, damping, drivers = model.stiffness.copy(), model.damping.copy(), model.input.copy()
+    arms, stiffness, damping, drivers = model.mass.shape[:-2], model.stiffness.copy(), model.damping.copy(), model.input.copy()
     if "motor" in model.names and not which & GEAR_OPEN:
         _close_gears(structure, model, stiffness, damping, drivers)
     for column, place in held:
-        drivers[:, column] -= stiffness[:, place]
-    extra = model.extra.shape[0]
+        drivers[..., column] -= stiffness[..., place]
+    extra = model.extra.shape[-1]
     inverse = np.linalg.inv(free.T @ model.mass @ free)
     positions, states = free.shape[1], 2 * free.shape[1] + extra
-    dynamics = np.zeros((states, states))
-    dynamics[:positions, positions : 2 * positions] = np.eye(positions)
+    dynamics = np.zeros((*arms, states, states))
+    dynamics[..., :positions, positions : 2 * positions] = np.eye(positions)
     pull = _clean(free.T @ stiffness @ free, stiffness)
     rows = slice(positions, 2 * positions)
-    dynamics[rows, :positions] = -inverse @ pull
-    dynamics[rows, rows] = -inverse @ free.T @ damping @ free
-    dynamics[rows, 2 * positions :] = inverse @ free.T @ model.from_extra
+    dynamics[..., rows, :positions] = -inverse @ pull
+    dynamics[..., rows, rows] = -inverse @ free.T @ damping @ free
+    dynamics[..., rows, 2 * positions :] = inverse @ free.T @ model.from_extra
     into_extra = model.extra_from_motion
-    dynamics[2 * positions :, :positions] = _clean(into_extra[:, :size] @ free, into_extra)
-    dynamics[2 * positions :, rows] = into_extra[:, size:] @ free
-    dynamics[2 * positions :, 2 * positions :] = model.extra
+    dynamics[..., 2 * positions :, :positions] = _clean(into_extra[..., :size] @ free, into_extra)
+    dynamics[..., 2 * positions :, rows] = into_extra[..., size:] @ free
+    dynamics[..., 2 * positions :, 2 * positions :] = model.extra
     c0, c1, v, w = blocks_of(dynamics)
-    force = np.zeros((states, len(DRIVERS)))
-    force[rows] = inverse @ free.T @ drivers
-    force[2 * positions :] = model.extra_from_input
+    force = np.zeros((*arms, states, len(DRIVERS)))
+    force[..., rows, :] = inverse @ free.T @ drivers
+    force[..., 2 * positions :, :] = model.extra_from_input
     for column, place in held:
-        force[2 * positions :, column] += into_extra[:, place]
-    drag = np.zeros((states, model.drag_force.shape[1]))
-    drag[rows] = inverse @ free.T @ model.drag_force
+        force[..., 2 * positions :, column] += into_extra[..., place]
+    drag = np.zeros((*arms, states, model.drag_force.shape[-1]))
+    drag[..., rows, :] = inverse @ free.T @ model.drag_force
 
     lift = np.zeros((2 * size + extra, states))
     lift[:size, :positions] = free
@@ -149,12 +88,12 @@ def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
         at_hold[place, column] = 1.0
 
     bodies = 2 if "motor" in model.names else 1
-    resist = np.zeros((bodies, states))
-    resist[:, 2 * positions :] = model.from_extra[:bodies]
-    resist[:, rows] -= (damping @ free)[:bodies]
-    resist[:, :positions] -= (stiffness @ free)[:bodies]
-    inertial = (model.mass @ free)[:bodies]
-    resist -= inertial @ dynamics[rows]
+    resist = np.zeros((*arms, bodies, states))
+    resist[..., 2 * positions :] = model.from_extra[..., :bodies, :]
+    resist[..., rows] -= (damping @ free)[..., :bodies, :]
+    resist[..., :positions] -= (stiffness @ free)[..., :bodies, :]
+    inertial = (model.mass @ free)[..., :bodies, :]
+    resist -= inertial @ dynamics[..., rows, :]
     return Mode(
         c0=c0,
         c1=c1,
@@ -164,8 +103,8 @@ def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
         forcing=w @ force,
         drag_forcing=w @ drag,
         hold=resist @ v,
-        hold_drivers=drivers[:bodies] - inertial @ force[rows],
-        hold_drag=model.drag_force[:bodies] - inertial @ drag[rows],
+        hold_drivers=drivers[..., :bodies, :] - inertial @ force[..., rows, :],
+        hold_drag=model.drag_force[..., :bodies, :] - inertial @ drag[..., rows, :],
     )
 
 
@@ -179,11 +118,12 @@ def complete(free: Mode, held: Mode, body: int, speed: int) -> None:
         speed: the row of the body's speed in [q, q̇, e], which is zero.
     """
     physical = free.physical.copy()
-    physical[speed] = 0.0
-    column = HELD_HUB + body
-    free.hold[body] = held.hold[body] @ held.modal @ physical + held.hold_drivers[body, column] * physical[body]
-    free.hold_drivers[body], free.hold_drag[body] = held.hold_drivers[body], held.hold_drag[body]
-    free.hold_drivers[body, column] = 0.0
+    physical[..., speed, :] = 0.0
+    own, column = [body], HELD_HUB + body
+    by_angle = held.hold_drivers[..., own, column, None] * physical[..., own, :]
+    free.hold[..., own, :] = held.hold[..., own, :] @ held.modal @ physical + by_angle
+    free.hold_drivers[..., body, :], free.hold_drag[..., body, :] = held.hold_drivers[..., body, :], held.hold_drag[..., body, :]
+    free.hold_drivers[..., body, column] = 0.0
 
 
 def _unlift(free: Matrix, extra: int) -> Matrix:
@@ -198,7 +138,9 @@ def _unlift(free: Matrix, extra: int) -> Matrix:
 
 def _clean(product: Matrix, scale: Matrix) -> Matrix:
     """Zero what is only rounding, so that a coordinate that nothing depends on is seen as such."""
-    largest = np.abs(scale).max(initial=0.0)
+    if not product.size:
+        return product
+    largest = np.abs(scale).max(axis=(-2, -1), keepdims=True)
     return np.where(np.abs(product) < 1e-15 * largest, 0.0, product)
 
 
@@ -221,9 +163,9 @@ def _close_gears(structure: Structure, model: LinearModel, stiffness: Matrix, da
     k = structure.gear_stiffness
     windup = np.zeros(len(model.names))
     windup[0], windup[1] = -1.0, 1.0
-    stiffness += k * np.outer(windup, windup)
-    damping += GEAR_DAMPING_TIME * k * np.outer(windup, windup)
-    drivers[:, GEAR_SIDE] += k * 0.5 * structure.gear_gap / structure.gear_ratio * windup
+    stiffness += spread_out(k) * np.outer(windup, windup)
+    damping += spread_out(GEAR_DAMPING_TIME * k) * np.outer(windup, windup)
+    drivers[..., GEAR_SIDE] += np.asarray(k * 0.5 * structure.gear_gap / structure.gear_ratio)[..., None] * windup
 
 
-__all__ = ["COMMAND", "GEAR_OPEN", "HUB_STUCK", "MOTOR_STUCK", "Mode", "blocks_of", "complete", "mode_of"]
+__all__ = ["COMMAND", "GEAR_OPEN", "HUB_STUCK", "MOTOR_STUCK", "Mode", "complete", "mode_of"]

@@ -10,7 +10,7 @@ import numpy as np
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.beam import Matrix
 from flexarm_env.plant.compose import Law, compose
-from flexarm_env.plant.structure import Structure, assemble
+from flexarm_env.plant.structure import Structure, assemble, stacked
 from flexarm_env.plant.tables import RESPONSE, ActiveLaw, pack
 
 NO_GAINS = np.zeros((0, 0, 0))
@@ -31,9 +31,9 @@ class Plant:
     def __init__(self, structure: Structure, active: Sequence[ActiveLaw], catalogue: Sequence[Law], interval: float) -> None:
         self.kernel: Any = compose(catalogue)
         model = assemble(structure)
-        self.model = model
+        self.model, self.interval = model, interval
         self.signals = model.signals
-        self.constants, self.layout, self.delay_samples = pack(structure, model, active, interval)
+        self.constants, self.layout, self.delay_samples = pack(structure, model, [active], interval)
         n, d = self.layout, self.constants
         self.blocks, self.states = int(n[at.BLOCKS]), int(n[at.STATES])
         self.bodies = int(n[at.BODIES])
@@ -41,6 +41,24 @@ class Plant:
         self.kernel.prepare(d, n)
         self.scratch = np.zeros(self.kernel.scratch_size(n))
         self.state = np.zeros(at.HEADER + 2 * self.blocks)
+
+    def constants_of(self, structures: Sequence[Structure], laws: Sequence[Sequence[ActiveLaw]]) -> Matrix:
+        """Return the constants (arms, numbers) of arms that differ from this one in their numbers only.
+
+        Args:
+            structures: the linear part of each.
+            laws: those that act on each.
+
+        Raises:
+            ValueError: for arms of another kind.
+        """
+        structure = stacked(structures)
+        constants, layout, delay = pack(structure, assemble(structure), laws, self.interval)
+        if not np.array_equal(layout, self.layout) or delay != self.delay_samples:
+            raise ValueError("arms of another kind than this plant: build a plant of their own")
+        for row in constants:
+            self.kernel.prepare(row, layout)
+        return constants
 
     def mode_matrix(self, mode: int, quantity: int, rows: int) -> Matrix:
         """A view of one of the layout's row matrices (rows, 2 blocks) of a mode."""

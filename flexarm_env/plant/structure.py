@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
-from flexarm_env.plant.beam import Beam, Matrix
+from flexarm_env.plant.beam import Beam, Matrix, spread_out, turned
 
 #: What drives the linear part: the command, dry friction and non-linear torque on hub and motor, the constant 1,
 #: the side on which the gears touch (−1, 0, 1), and the angles of a held hub and a held motor.
 DRIVERS = ("command", "hub_torque", "motor_torque", "one", "gear_side", "held_hub", "held_motor")
 COMMAND, HUB_TORQUE, MOTOR_TORQUE, ONE, GEAR_SIDE, HELD_HUB, HELD_MOTOR = range(len(DRIVERS))
 
+#: What arms of one kind have in common.
+WHOLE = ("elements", "sensors")
 #: Stiffness [Nm/rad] of gears that touch, where backlash asks for a motor of its own but no
 #: compliance is given: stiff enough that windup stays below what a pot resolves.
 GEAR_STIFFNESS = 4000.0
@@ -20,6 +24,11 @@ GEAR_STIFFNESS = 4000.0
 LEAST_COMPLIANCE = 1e-7
 #: Damping of gears that touch, as a time [s] times their stiffness.
 GEAR_DAMPING_TIME = 5e-4
+
+
+def exceeds(quantity: float | Matrix, limit: float) -> bool:
+    """Whether a quantity of an arm, or of every stacked one, lies above a limit."""
+    return bool((quantity > limit).all()) if isinstance(quantity, np.ndarray) else quantity > limit
 
 
 @dataclass
@@ -62,12 +71,27 @@ class Structure:
     @property
     def separate_motor(self) -> bool:
         """Whether motor and hub are two bodies."""
-        return self.gear_compliance > LEAST_COMPLIANCE or self.gear_gap > 0.0
+        return exceeds(self.gear_compliance, LEAST_COMPLIANCE) or exceeds(self.gear_gap, 0.0)
+
+    @property
+    def soft_root(self) -> bool:
+        """Whether the beam's root can turn against the hub."""
+        return exceeds(self.root_compliance, LEAST_COMPLIANCE)
 
     @property
     def gear_stiffness(self) -> float:
         """Stiffness of the touching gears, arm side [Nm/rad]."""
-        return 1.0 / self.gear_compliance if self.gear_compliance > LEAST_COMPLIANCE else GEAR_STIFFNESS
+        return 1.0 / self.gear_compliance if exceeds(self.gear_compliance, LEAST_COMPLIANCE) else GEAR_STIFFNESS
+
+
+def stacked(structures: Sequence[Structure]) -> Structure:
+    """Return arms of one kind, which differ in their numbers only, as one structure whose quantities are (arms,)."""
+    first, every = structures[0], [vars(structure) for structure in structures]
+    values: dict[str, Any] = {name: np.array([each[name] for each in every]) for name in every[0] if name not in WHOLE}
+    for signal in first.sensors:
+        rows = np.array([list(vars(structure.sensors[signal]).values()) for structure in structures])
+        values.setdefault("sensors", {})[signal] = Sensor(*rows.T)
+    return Structure(elements=first.elements, **values)
 
 
 @dataclass
@@ -91,56 +115,57 @@ class LinearModel:
 
 
 def assemble(structure: Structure) -> LinearModel:
-    """Build the matrices of an arm (thesis eqs. 3.9 to 3.14, consistent: see the errata).
+    """Build the matrices of an arm, or of many (thesis eqs. 3.9 to 3.14, consistent: see the errata).
 
     Args:
-        structure: the arm's linear quantities.
+        structure: the arm's linear quantities; those of many arms are `stacked`.
 
     Returns:
         Matrices on the coordinates [hub, (motor), (root), v_1, s_1, …]; the motor's angle is that of the arm side.
+        Those of stacked arms are (arms, rows, columns).
     """
     s = structure
     names = ["hub"] + (["motor"] if s.separate_motor else [])
     beam = Beam(s.elements, s.length, s.mass_per_length, s.bending_stiffness) if s.elements else None
     # a beam coordinate stands where its own numbering puts it, the root's slope only if it can turn
-    kept = [] if beam is None else ([1] if s.root_compliance > LEAST_COMPLIANCE else []) + list(range(2, beam.size))
-    names += [] if beam is None else (["root"] if s.root_compliance > LEAST_COMPLIANCE else []) + _node_names(s.elements)
+    kept = [] if beam is None else ([1] if s.soft_root else []) + list(range(2, beam.size))
+    names += [] if beam is None else (["root"] if s.soft_root else []) + _node_names(s.elements)
     place = np.array([0, *range(len(names) - len(kept), len(names))], dtype=int)
     size = len(names)
-    mass, damping, stiffness = (np.zeros((size, size)) for _ in range(3))
+    mass, damping, stiffness = (np.zeros((*np.shape(s.hub_inertia), size, size)) for _ in range(3))
 
-    def spread(row: Matrix) -> Matrix:
-        wide = np.zeros(size)
-        wide[place] = row[[0, *kept]]
+    def spread(rows: Matrix) -> Matrix:
+        wide = np.zeros((*rows.shape[:-1], size))
+        wide[..., place] = rows[..., [0, *kept]]
         return wide
 
     if beam is not None:
         pick = np.ix_([0, *kept], [0, *kept])
         where = np.ix_(place, place)
-        mass[where] += beam.mass[pick]
-        stiffness[where] += beam.stiffness[pick]
-        damping[where] += s.beam_damping * beam.stiffness[pick]
-        tip = spread(beam.deflection_row(s.length, absolute=True))
-        mass += s.tip_mass * np.outer(tip, tip)
+        mass[..., where[0], where[1]] += beam.mass[..., pick[0], pick[1]]
+        stiffness[..., where[0], where[1]] += beam.stiffness[..., pick[0], pick[1]]
+        damping[..., where[0], where[1]] += (spread_out(s.beam_damping) * beam.stiffness)[..., pick[0], pick[1]]
+        tip = spread(beam.deflection_rows(beam.length[..., None], absolute=True))
+        mass += spread_out(s.tip_mass) * (turned(tip) * tip)
         turn = np.zeros(size)
         turn[0] = turn[-1] = 1.0
-        mass += s.tip_inertia * np.outer(turn, turn)
-        if s.root_compliance > LEAST_COMPLIANCE:
+        mass += spread_out(s.tip_inertia) * np.outer(turn, turn)
+        if s.soft_root:
             root = names.index("root")
-            stiffness[root, root] += 1.0 / s.root_compliance
+            stiffness[..., root, root] += 1.0 / s.root_compliance
     motor = names.index("motor") if s.separate_motor else 0
-    mass[0, 0] += s.hub_inertia
-    mass[motor, motor] += s.gear_ratio**2 * s.motor_inertia
+    mass[..., 0, 0] += s.hub_inertia
+    mass[..., motor, motor] += s.gear_ratio**2 * s.motor_inertia
     share = s.motor_viscous_share if s.separate_motor else 1.0
-    damping[motor, motor] += s.viscous * share
-    damping[0, 0] += s.viscous * (1.0 - share)
-    stiffness[0, 0] += s.hub_stiffness
+    damping[..., motor, motor] += s.viscous * share
+    damping[..., 0, 0] += s.viscous * (1.0 - share)
+    stiffness[..., 0, 0] += s.hub_stiffness
     model = _drive(s, names, motor, mass, damping, stiffness)
     _sensors(s, model, beam, spread, motor)
     if beam is not None:
-        points = beam.drag_points()
-        model.drag_velocity = np.array([spread(beam.deflection_row(x, absolute=True)) for x, _ in points])
-        model.drag_force = np.array([w * row for (_, w), row in zip(points, model.drag_velocity, strict=True)]).T
+        places, weights = beam.drag_points()
+        model.drag_velocity = spread(beam.deflection_rows(places, absolute=True))
+        model.drag_force = turned(weights[..., None] * model.drag_velocity)
     return model
 
 
@@ -149,15 +174,16 @@ def _node_names(elements: int) -> list[str]:
 
 
 def _drive(s: Structure, names: list[str], motor: int, mass: Matrix, damping: Matrix, stiffness: Matrix) -> LinearModel:
-    size = len(names)
-    drivers = np.zeros((size, len(DRIVERS)))
-    drivers[0, HUB_TORQUE] = 1.0
-    drivers[motor, MOTOR_TORQUE] = 1.0 if s.separate_motor else 0.0
-    drivers[0, ONE] = s.hub_torque
+    size, arms = len(names), mass.shape[:-2]
+    drivers = np.zeros((*arms, size, len(DRIVERS)))
+    drivers[..., 0, HUB_TORQUE] = 1.0
+    drivers[..., motor, MOTOR_TORQUE] = 1.0 if s.separate_motor else 0.0
+    drivers[..., 0, ONE] = s.hub_torque
     torque_per_amp = s.gear_ratio * s.torque_constant
-    amps_per_command = 1.0 / s.resistance if s.resistance > 0.0 else 1.0
-    amps_per_speed = -torque_per_amp / s.resistance if s.resistance > 0.0 else 0.0
-    lagged = s.current_lag > 0.0
+    by_voltage = exceeds(s.resistance, 0.0)
+    amps_per_command = 1.0 / s.resistance if by_voltage else 1.0
+    amps_per_speed = -torque_per_amp / s.resistance if by_voltage else 0.0
+    lagged = exceeds(s.current_lag, 0.0)
     extra = int(lagged)
     model = LinearModel(
         names=names,
@@ -165,64 +191,67 @@ def _drive(s: Structure, names: list[str], motor: int, mass: Matrix, damping: Ma
         damping=damping,
         stiffness=stiffness,
         input=drivers,
-        from_extra=np.zeros((size, extra)),
-        extra=np.zeros((extra, extra)),
-        extra_from_motion=np.zeros((extra, 2 * size)),
-        extra_from_input=np.zeros((extra, len(DRIVERS))),
-        output=np.zeros((0, 0)),
-        output_from_input=np.zeros((0, len(DRIVERS))),
-        drag_force=np.zeros((size, 0)),
-        drag_velocity=np.zeros((0, size)),
+        from_extra=np.zeros((*arms, size, extra)),
+        extra=np.zeros((*arms, extra, extra)),
+        extra_from_motion=np.zeros((*arms, extra, 2 * size)),
+        extra_from_input=np.zeros((*arms, extra, len(DRIVERS))),
+        output=np.zeros((*arms, 0, 0)),
+        output_from_input=np.zeros((*arms, 0, len(DRIVERS))),
+        drag_force=np.zeros((*arms, size, 0)),
+        drag_velocity=np.zeros((*arms, 0, size)),
         signals=[],
     )
     if lagged:
-        model.from_extra[motor, 0] = torque_per_amp
-        model.extra[0, 0] = -1.0 / s.current_lag
-        model.extra_from_input[0, COMMAND] = amps_per_command / s.current_lag
-        model.extra_from_motion[0, size + motor] = amps_per_speed / s.current_lag
+        model.from_extra[..., motor, 0] = torque_per_amp
+        model.extra[..., 0, 0] = -1.0 / s.current_lag
+        model.extra_from_input[..., 0, COMMAND] = amps_per_command / s.current_lag
+        model.extra_from_motion[..., 0, size + motor] = amps_per_speed / s.current_lag
     else:
-        drivers[motor, COMMAND] = torque_per_amp * amps_per_command
-        damping[motor, motor] -= torque_per_amp * amps_per_speed
+        drivers[..., motor, COMMAND] = torque_per_amp * amps_per_command
+        damping[..., motor, motor] -= torque_per_amp * amps_per_speed
     return model
 
 
-def _sensors(s: Structure, model: LinearModel, beam: Beam | None, spread, motor: int) -> None:  # type: ignore[no-untyped-def]
-    size = len(model.names)
-    rows = []
-    for signal, sensor in s.sensors.items():
-        row = np.zeros(2 * size)
-        if signal == "arm_angle":
-            row[0] = 1.0
-        elif signal == "motor_speed":
-            row[size + motor] = s.gear_ratio
-        elif beam is not None and signal == "tip_deflection":
-            row[:size] = spread(beam.deflection_row(s.length, absolute=False))
-        elif beam is not None:
-            row[:size] = spread(beam.moment_row(sensor.position))
-        rows.append(sensor.gain * row)
-    filtered = [i for i, sensor in enumerate(s.sensors.values()) if sensor.filter > 0.0]
-    before = model.extra.shape[0]
+def _sensors(s: Structure, model: LinearModel, beam: Beam | None, spread: Callable[[Matrix], Matrix], motor: int) -> None:
+    size, arms = len(model.names), model.mass.shape[:-2]
+    filtered = [i for i, sensor in enumerate(s.sensors.values()) if exceeds(sensor.filter, 0.0)]
+    before = model.extra.shape[-1]
     total = before + len(filtered)
     model.extra = _grown(model.extra, total, total)
     model.from_extra = _grown(model.from_extra, size, total)
     model.extra_from_motion = _grown(model.extra_from_motion, total, 2 * size)
     model.extra_from_input = _grown(model.extra_from_input, total, len(DRIVERS))
-    model.output = np.zeros((len(rows), 2 * size + total))
-    model.output_from_input = np.zeros((len(rows), len(DRIVERS)))
+    model.output = np.zeros((*arms, len(s.sensors), 2 * size + total))
+    model.output_from_input = np.zeros((*arms, len(s.sensors), len(DRIVERS)))
     model.signals = list(s.sensors)
-    for i, (sensor, row) in enumerate(zip(s.sensors.values(), rows, strict=True)):
-        model.output_from_input[i, ONE] = sensor.offset
+    if beam is not None:
+        places = np.zeros((*arms, len(s.sensors)))
+        for i, sensor in enumerate(s.sensors.values()):
+            places[..., i] = sensor.position
+        moments = spread(beam.moment_rows(places))
+    for i, (signal, sensor) in enumerate(s.sensors.items()):
+        row = np.zeros((*arms, 2 * size))
+        if signal == "arm_angle":
+            row[..., 0] = 1.0
+        elif signal == "motor_speed":
+            row[..., size + motor] = s.gear_ratio
+        elif beam is not None and signal == "tip_deflection":
+            row[..., :size] = spread(beam.deflection_rows(beam.length[..., None], absolute=False))[..., 0, :]
+        elif beam is not None:
+            row[..., :size] = moments[..., i, :]
+        row *= np.asarray(sensor.gain)[..., None]
+        model.output_from_input[..., i, ONE] = sensor.offset
         if i in filtered:
             place = before + filtered.index(i)
-            model.extra[place, place] = -1.0 / sensor.filter
-            model.extra_from_motion[place] = row / sensor.filter
-            model.output[i, 2 * size + place] = 1.0
+            model.extra[..., place, place] = -1.0 / sensor.filter
+            model.extra_from_motion[..., place, :] = row / np.asarray(sensor.filter)[..., None]
+            model.output[..., i, 2 * size + place] = 1.0
         else:
-            model.output[i, : 2 * size] = row
+            model.output[..., i, : 2 * size] = row
 
 
 def _grown(matrix: Matrix, rows: int, columns: int) -> Matrix:
-    """Return the matrix with zeros below and to the right."""
-    grown = np.zeros((rows, columns))
-    grown[: matrix.shape[0], : matrix.shape[1]] = matrix
+    """Return matrices with zeros below and to the right."""
+    grown = np.zeros((*matrix.shape[:-2], rows, columns))
+    grown[..., : matrix.shape[-2], : matrix.shape[-1]] = matrix
     return grown

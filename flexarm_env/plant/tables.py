@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.beam import Matrix
+from flexarm_env.plant.beam import Matrix, turned
 from flexarm_env.plant.modal import Mode, complete, mode_of
 from flexarm_env.plant.slide import DEPTH, table_size
-from flexarm_env.plant.structure import DRIVERS, GEAR_DAMPING_TIME, HUB_TORQUE, MOTOR_TORQUE, LinearModel, Structure
+from flexarm_env.plant.structure import DRIVERS, GEAR_DAMPING_TIME, HUB_TORQUE, MOTOR_TORQUE, LinearModel, Structure, exceeds
 
 RESPONSE = 5
 #: Longest steps [s] over which a force that depends on the motion is fitted by one quartic; with drag, by a parabola.
@@ -40,59 +41,69 @@ class ActiveLaw:
 
 
 def pack(
-    structure: Structure, model: LinearModel, active: Sequence[ActiveLaw], interval: float
+    structure: Structure, model: LinearModel, laws: Sequence[Sequence[ActiveLaw]], interval: float
 ) -> tuple[Matrix, NDArray[np.int64], int]:
     """Return (d, n, whole samples of delay) for the kernel; the blocks' responses are still to be filled in.
 
     Args:
-        structure: the linear quantities.
+        structure: the linear quantities, of one arm or of stacked ones.
         model: their matrices.
-        active: the laws at work.
+        laws: those at work, for each arm; they differ in their parameters only.
         interval: sampling time [s].
+
+    Returns:
+        d is (numbers,), or for stacked arms (arms, numbers).
     """
+    active, arms = laws[0], model.mass.shape[:-2]
     bodies = 2 if structure.separate_motor else 1
-    count = 8 if structure.gear_gap > 0.0 else 2**bodies
+    count = 8 if exceeds(structure.gear_gap, 0.0) else 2**bodies
     modes = [mode_of(structure, model, which) for which in range(count)]
     for which, mode in enumerate(modes):
         for body in range(bodies):
             if not which >> body & 1:
                 complete(mode, modes[which | 1 << body], body, len(model.names) + body)
     varying = any(law.varies for law in active)
-    points = model.drag_force.shape[1] if any(law.port == "drag" for law in active) else 0
+    points = model.drag_force.shape[-1] if any(law.port == "drag" for law in active) else 0
     whole, early = split_delay(structure.input_delay, interval)
     n = np.zeros(at.COUNTS, dtype=np.int64)
-    blocks = max(len(mode.c0) for mode in modes)
+    blocks = max(mode.c0.shape[-1] for mode in modes)
     n[at.BODIES], n[at.COORDINATES], n[at.POINTS] = bodies, len(model.names), points
-    n[at.COUPLED] = bodies == 2 or structure.hub_stiffness != 0.0
+    n[at.COUPLED] = bodies == 2 or np.any(np.not_equal(structure.hub_stiffness, 0.0))
     n[at.VARYING] = varying
     n[at.GLIDES] = 0 if varying else bodies
     n[at.BLOCKS] = blocks
-    n[at.SIGNALS], n[at.STATES], n[at.DRIVERS] = len(model.signals), modes[0].physical.shape[0], len(DRIVERS)
+    n[at.SIGNALS], n[at.STATES], n[at.DRIVERS] = len(model.signals), modes[0].physical.shape[-2], len(DRIVERS)
     n[at.MODES] = at.CONSTANTS
     reach = _size_of_tables(n)
     records = [_record(model, mode, which, bodies, points, blocks, reach) for which, mode in enumerate(modes)]
     place = 0
     for key, value in records[0].items():
         n[key] = place
-        place += value.size
+        place += math.prod(value.shape[len(arms) :])
     n[at.STRIDE] = place
     longest = LONGEST_STEP_WITH_DRAG if points else LONGEST_STEP if varying else np.inf
-    parts = np.array([early, interval - early])
+    parts = np.zeros((*arms, 2))
+    parts[..., 0], parts[..., 1] = early, interval - early
     steps = np.where(parts > 0.0, np.maximum(np.ceil(parts / longest - 1e-9), 1), 0)
-    n[at.EARLY_SUBSTEPS], n[at.LATE_SUBSTEPS] = steps.astype(int)
+    n[at.EARLY_SUBSTEPS], n[at.LATE_SUBSTEPS] = steps.reshape(-1, 2)[0].astype(int)
     n[at.PARAMETERS] = at.CONSTANTS + count * place
-    lists, parameters = _law_lists(active, int(n[at.PARAMETERS]), bodies, model.signals)
-    laws: list[int] = []
+    lists, _ = _law_lists(active, int(n[at.PARAMETERS]), bodies, model.signals)
+    named: list[int] = []
     for key, rows in zip(LAW_LISTS, lists, strict=True):
-        n[key] = at.COUNTS + len(laws)
-        laws += rows
+        n[key] = at.COUNTS + len(named)
+        named += rows
+    head = np.zeros((*arms, at.CONSTANTS))
+    parameters = np.array([_law_lists(own, 0, bodies, model.signals)[1] for own in laws]).reshape(*arms, -1)
+    values = [value.reshape(*arms, -1) for record in records for value in record.values()]
+    d = np.concatenate([head, *values, parameters], axis=-1)
     lengths = parts / np.maximum(steps, 1)
-    gap = structure.gear_gap / structure.gear_ratio
-    shares = [law.motor_share if bodies == 2 else 0.0 for law in active if law.port == "friction"]
-    rubs = [sum(1.0 - share for share in shares), sum(shares)]
-    head = [gap, TOLERANCE, interval, lengths[0], lengths[1], *rubs, structure.gear_ratio]
-    d = np.concatenate([head, *(v.ravel() for record in records for v in record.values()), parameters])
-    return d, np.concatenate([n, np.array(laws, dtype=np.int64)]), whole
+    d[..., at.GAP] = structure.gear_gap / structure.gear_ratio
+    d[..., at.TOLERANCE], d[..., at.INTERVAL], d[..., at.GEAR_RATIO] = TOLERANCE, interval, structure.gear_ratio
+    d[..., at.EARLY_LENGTH], d[..., at.LATE_LENGTH] = lengths[..., 0], lengths[..., 1]
+    shares = np.array([[law.motor_share if bodies == 2 else 0.0 for law in own if law.port == "friction"] for own in laws])
+    d[..., at.HUB_RUBS] = np.sum(1.0 - shares, axis=-1).reshape(arms)
+    d[..., at.MOTOR_RUBS] = np.sum(shares, axis=-1).reshape(arms)
+    return d, np.concatenate([n, np.array(named, dtype=np.int64)]), whole
 
 
 def _size_of_tables(n: NDArray[np.int64]) -> int:
@@ -103,59 +114,64 @@ def _size_of_tables(n: NDArray[np.int64]) -> int:
     return 2 * levels * int(getattr(table_size, "py_func", table_size)(n))
 
 
-def split_delay(delay: float, interval: float) -> tuple[int, float]:
-    """Return whole samples and the rest [s] of a delay; the whole part may be negative."""
-    whole = int(np.floor(delay / interval + 1e-9))
-    rest = delay - whole * interval
-    return whole, rest if rest > 1e-9 * interval else 0.0
+def split_delay(delay: ArrayLike, interval: float) -> tuple[int, Matrix]:
+    """Return whole samples and the rest [s] of a delay, or the rests of some with as many; the whole part may be negative."""
+    whole = int(np.floor(np.ravel(delay)[0] / interval + 1e-9))
+    rest = np.asarray(delay) - whole * interval
+    return whole, np.where(rest > 1e-9 * interval, rest, 0.0)
 
 
 def _record(model: LinearModel, mode: Mode, which: int, bodies: int, points: int, blocks: int, reach: int) -> dict[int, Matrix]:
     size = len(model.names)
     torques = [HUB_TORQUE, MOTOR_TORQUE][:bodies]
     physical = _wide(mode.physical, blocks)
-    c0, c1 = (np.concatenate([c, np.zeros(blocks - len(c))]) for c in (mode.c0, mode.c1))
+    arms = mode.c0.shape[:-1]
+    none = np.zeros((*arms, blocks - mode.c0.shape[-1]))
+    c0, c1 = np.concatenate([mode.c0, none], axis=-1), np.concatenate([mode.c1, none], axis=-1)
     hold = _wide(mode.hold, blocks)
-    speed, windup = physical[size : size + bodies], physical[bodies - 1] - physical[0]
-    mesh = windup + GEAR_DAMPING_TIME * (speed[bodies - 1] - speed[0])
+    angle, speed = physical[..., :bodies, :], physical[..., size : size + bodies, :]
+    windup = angle[..., -1:, :] - angle[..., :1, :]
+    mesh = windup + GEAR_DAMPING_TIME * (speed[..., -1:, :] - speed[..., :1, :])
+    forces = np.concatenate([mode.forcing[..., torques], mode.drag_forcing[..., :points]], axis=-1)
+    held_angles = np.array([float((which >> body) & 1) for body in range(bodies)])
     return {
         at.C0: c0,
         at.C1: c1,
-        at.RESPONSES: np.zeros((2, 2, blocks, RESPONSE)),
-        at.GLIDE: np.zeros((2, blocks, at.GLIDE_SIZE)),
-        at.REACH: np.zeros(reach),
+        at.RESPONSES: np.zeros((*arms, 4 * blocks * RESPONSE)),
+        at.GLIDE: np.zeros((*arms, 2 * blocks * at.GLIDE_SIZE)),
+        at.REACH: np.zeros((*arms, reach)),
         at.PHYSICAL: physical,
-        at.MODAL: _wide(mode.modal.T, blocks).T,
-        at.FORCING: _wide(mode.forcing.T, blocks).T,
-        at.FORCE_COLUMNS: _wide(np.vstack([mode.forcing.T[torques], mode.drag_forcing.T[:points]]), blocks),
+        at.MODAL: turned(_wide(turned(mode.modal), blocks)),
+        at.FORCING: turned(_wide(turned(mode.forcing), blocks)),
+        at.FORCE_COLUMNS: _wide(turned(forces), blocks),
         at.SPEED: speed,
         at.SPEED_WEIGHT: _weights(speed, c0, c1),
-        at.ANGLE: physical[:bodies],
-        at.HOLDS_ANGLE: np.array([float((which >> body) & 1) for body in range(bodies)]),
+        at.ANGLE: angle,
+        at.HOLDS_ANGLE: np.broadcast_to(held_angles, (*arms, bodies)),
         at.WINDUP: windup,
-        at.WINDUP_WEIGHT: _weights(windup[None], c0, c1),
+        at.WINDUP_WEIGHT: _weights(windup, c0, c1),
         at.MESH: mesh,
-        at.MESH_WEIGHT: _weights(mesh[None], c0, c1),
+        at.MESH_WEIGHT: _weights(mesh, c0, c1),
         at.HOLD: hold,
         at.HOLD_WEIGHT: _weights(hold, c0, c1),
         at.HOLD_DRIVERS: mode.hold_drivers,
-        at.HOLD_FORCES: np.hstack([mode.hold_drivers[:, torques], mode.hold_drag[:, :points]]),
-        at.DRAG_VELOCITY: (model.drag_velocity @ physical[size : 2 * size])[:points],
+        at.HOLD_FORCES: np.concatenate([mode.hold_drivers[..., torques], mode.hold_drag[..., :points]], axis=-1),
+        at.DRAG_VELOCITY: model.drag_velocity[..., :points, :] @ physical[..., size : 2 * size, :],
         at.OUTPUT: model.output @ physical,
         at.OUTPUT_DRIVERS: model.output @ mode.held + model.output_from_input,
     }
 
 
 def _wide(matrix: Matrix, blocks: int) -> Matrix:
-    wide = np.zeros((len(matrix), 2 * blocks))
-    wide[:, : matrix.shape[1]] = matrix
+    wide = np.zeros((*matrix.shape[:-1], 2 * blocks))
+    wide[..., : matrix.shape[-1]] = matrix
     return wide
 
 
 def _weights(rows: Matrix, c0: Matrix, c1: Matrix) -> Matrix:
     """How much each block's amplitude can bend each row's value: what curvature_bound sums up."""
-    a = rows[:, 0::2] - rows[:, 1::2] * c1
-    weights: Matrix = np.sqrt(a**2 + rows[:, 1::2] ** 2 * c0)
+    a = rows[..., 0::2] - rows[..., 1::2] * c1[..., None, :]
+    weights: Matrix = np.sqrt(a**2 + rows[..., 1::2] ** 2 * c0[..., None, :])
     return weights
 
 

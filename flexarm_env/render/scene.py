@@ -53,7 +53,7 @@ def beam_shape(structure: Structure, stations: Matrix) -> Matrix:
     if structure.elements == 0:
         return shape
     beam = Beam(structure.elements, structure.length, structure.mass_per_length, structure.bending_stiffness)
-    rows = np.array([beam.deflection_row(x, absolute=False) for x in stations])
+    rows = beam.deflection_rows(stations, absolute=False)
     shape[:, coordinates - 2 * structure.elements : coordinates] = rows[:, 2:]
     if "root" in model.names:
         shape[:, model.names.index("root")] = rows[:, 1]
