@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -49,57 +50,51 @@ def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
         model: the matrices.
         which: HUB_STUCK, MOTOR_STUCK and GEAR_OPEN added up.
     """
-    size = len(model.names)
-    free, held = _free_coordinates(model.names, which)
+    size, extra = len(model.names), model.extra.shape[-1]
+    frame = _frame(size, "motor" in model.names, extra, which)
+    free, held = frame.free, frame.held
     arms, stiffness, damping, drivers = model.mass.shape[:-2], model.stiffness.copy(), model.damping.copy(), model.input.copy()
     if "motor" in model.names and not which & GEAR_OPEN:
         _close_gears(structure, model, stiffness, damping, drivers)
     for column, place in held:
         drivers[..., column] -= stiffness[..., place]
-    extra = model.extra.shape[-1]
-    inverse = np.linalg.inv(free.T @ model.mass @ free)
+    inertial = model.mass @ free
+    inverse = np.linalg.inv(free.T @ inertial)
+    answer = inverse @ free.T  # accelerations by forces
+    damped, bent = damping @ free, stiffness @ free
     positions, states = free.shape[1], 2 * free.shape[1] + extra
     dynamics = np.zeros((*arms, states, states))
     dynamics[..., :positions, positions : 2 * positions] = np.eye(positions)
-    pull = _clean(free.T @ stiffness @ free, stiffness)
+    pull = _clean(free.T @ bent, stiffness)
     rows = slice(positions, 2 * positions)
     dynamics[..., rows, :positions] = -inverse @ pull
-    dynamics[..., rows, rows] = -inverse @ free.T @ damping @ free
-    dynamics[..., rows, 2 * positions :] = inverse @ free.T @ model.from_extra
+    dynamics[..., rows, rows] = -answer @ damped
+    dynamics[..., rows, 2 * positions :] = answer @ model.from_extra
     into_extra = model.extra_from_motion
     dynamics[..., 2 * positions :, :positions] = _clean(into_extra[..., :size] @ free, into_extra)
     dynamics[..., 2 * positions :, rows] = into_extra[..., size:] @ free
     dynamics[..., 2 * positions :, 2 * positions :] = model.extra
     c0, c1, v, w = blocks_of(dynamics)
     force = np.zeros((*arms, states, len(DRIVERS)))
-    force[..., rows, :] = inverse @ free.T @ drivers
+    force[..., rows, :] = answer @ drivers
     force[..., 2 * positions :, :] = model.extra_from_input
     for column, place in held:
         force[..., 2 * positions :, column] += into_extra[..., place]
     drag = np.zeros((*arms, states, model.drag_force.shape[-1]))
-    drag[..., rows, :] = inverse @ free.T @ model.drag_force
-
-    lift = np.zeros((2 * size + extra, states))
-    lift[:size, :positions] = free
-    lift[size : 2 * size, rows] = free
-    lift[2 * size :, 2 * positions :] = np.eye(extra)
-    at_hold = np.zeros((2 * size + extra, len(DRIVERS)))
-    for column, place in held:
-        at_hold[place, column] = 1.0
-
+    drag[..., rows, :] = answer @ model.drag_force
     bodies = 2 if "motor" in model.names else 1
     resist = np.zeros((*arms, bodies, states))
     resist[..., 2 * positions :] = model.from_extra[..., :bodies, :]
-    resist[..., rows] -= (damping @ free)[..., :bodies, :]
-    resist[..., :positions] -= (stiffness @ free)[..., :bodies, :]
-    inertial = (model.mass @ free)[..., :bodies, :]
+    resist[..., rows] -= damped[..., :bodies, :]
+    resist[..., :positions] -= bent[..., :bodies, :]
+    inertial = inertial[..., :bodies, :]
     resist -= inertial @ dynamics[..., rows, :]
     return Mode(
         c0=c0,
         c1=c1,
-        physical=lift @ v,
-        held=at_hold,
-        modal=w @ _unlift(free, extra),
+        physical=frame.lift @ v,
+        held=frame.at_hold,
+        modal=w @ frame.pick,
         forcing=w @ force,
         drag_forcing=w @ drag,
         hold=resist @ v,
@@ -119,21 +114,11 @@ def complete(free: Mode, held: Mode, body: int, speed: int) -> None:
     """
     physical = free.physical.copy()
     physical[..., speed, :] = 0.0
-    own, column = [body], HELD_HUB + body
-    by_angle = held.hold_drivers[..., own, column, None] * physical[..., own, :]
+    own, column = slice(body, body + 1), HELD_HUB + body
+    by_angle = held.hold_drivers[..., own, column : column + 1] * physical[..., own, :]
     free.hold[..., own, :] = held.hold[..., own, :] @ held.modal @ physical + by_angle
     free.hold_drivers[..., body, :], free.hold_drag[..., body, :] = held.hold_drivers[..., body, :], held.hold_drag[..., body, :]
     free.hold_drivers[..., body, column] = 0.0
-
-
-def _unlift(free: Matrix, extra: int) -> Matrix:
-    """Return the matrix that picks the free coordinates, their rates and the extra states from [q, q̇, e]."""
-    size, positions = free.shape
-    pick = 2.0 * np.eye(size) - free if size == positions else free.T  # its inverse: one entry off the diagonal
-    out = np.zeros((2 * positions + extra, 2 * size + extra))
-    out[:positions, :size] = out[positions : 2 * positions, size : 2 * size] = pick
-    out[2 * positions :, 2 * size :] = np.eye(extra)
-    return out
 
 
 def _clean(product: Matrix, scale: Matrix) -> Matrix:
@@ -144,19 +129,38 @@ def _clean(product: Matrix, scale: Matrix) -> Matrix:
     return np.where(np.abs(product) < 1e-15 * largest, 0.0, product)
 
 
-def _free_coordinates(names: list[str], which: int) -> tuple[Matrix, list[tuple[int, int]]]:
-    size = len(names)
-    free = np.eye(size)
-    held, gone = [], []
-    if "motor" in names and not which & (HUB_STUCK | MOTOR_STUCK):
-        free[1, 0] = 1.0  # the motor's coordinate becomes the windup of the gears
-    if which & HUB_STUCK:
-        gone.append(0)
-        held.append((HELD_HUB, 0))
-    if which & MOTOR_STUCK:
-        gone.append(1)
-        held.append((HELD_MOTOR, 1))
-    return free[:, [place for place in range(size) if place not in gone]], held
+@dataclass(frozen=True)
+class _Frame:
+    """What a mode's coordinates are, whatever the arm's numbers."""
+
+    free: Matrix  # (coordinates, positions): coordinates from the mode's positions
+    held: list[tuple[int, int]]  # driver and coordinate of each held body
+    lift: Matrix  # [q, q̇, e] from the mode's states
+    pick: Matrix  # and back
+    at_hold: Matrix  # [q, q̇, e] from the drivers
+
+
+@lru_cache(maxsize=256)
+def _frame(size: int, two_bodies: bool, extra: int, which: int) -> _Frame:
+    whole = np.eye(size)
+    if two_bodies and not which & (HUB_STUCK | MOTOR_STUCK):
+        whole[1, 0] = 1.0  # the motor's coordinate becomes the windup of the gears
+    held = [(HELD_HUB, 0)] if which & HUB_STUCK else []
+    held += [(HELD_MOTOR, 1)] if which & MOTOR_STUCK else []
+    free = np.delete(whole, [place for _, place in held], axis=1)
+    positions = free.shape[1]
+    # the inverse of free: one entry off the diagonal, or rows of the unit matrix
+    places = 2.0 * np.eye(size) - free if size == positions else free.T
+    lift, pick = np.zeros((2 * size + extra, 2 * positions + extra)), np.zeros((2 * positions + extra, 2 * size + extra))
+    lift[:size, :positions] = lift[size : 2 * size, positions : 2 * positions] = free
+    pick[:positions, :size] = pick[positions : 2 * positions, size : 2 * size] = places
+    lift[2 * size :, 2 * positions :] = pick[2 * positions :, 2 * size :] = np.eye(extra)
+    at_hold = np.zeros((2 * size + extra, len(DRIVERS)))
+    for column, place in held:
+        at_hold[place, column] = 1.0
+    for matrix in (free, lift, pick, at_hold):
+        matrix.flags.writeable = False
+    return _Frame(free, held, lift, pick, at_hold)
 
 
 def _close_gears(structure: Structure, model: LinearModel, stiffness: Matrix, damping: Matrix, drivers: Matrix) -> None:
