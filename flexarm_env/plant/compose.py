@@ -73,6 +73,7 @@ ENTRANCES = (
 #: The kernel, each file after those that it calls.
 FILES = (
     "propagate.py",
+    "ahead.py",
     "crossing.py",
     "stick_slip.py",
     "varying.py",

@@ -4,16 +4,8 @@ from __future__ import annotations
 
 from numba import njit
 
-from flexarm_env.plant.crossing import (
-    amplitudes,
-    arrive,
-    copy_size,
-    curvature_bound,
-    first_crossing,
-    rate_of,
-    start_copy,
-    value_at,
-)
+from flexarm_env.plant.ahead import arrive, copy_size, rate_of, start_copy, value_at
+from flexarm_env.plant.crossing import amplitudes, curvature_bound, first_crossing
 from flexarm_env.plant.layout import (
     BLOCKS,
     BODIES,

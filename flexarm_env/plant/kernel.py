@@ -6,7 +6,7 @@ import math
 
 from numba import njit
 
-from flexarm_env.plant.crossing import copy_size
+from flexarm_env.plant.ahead import copy_size
 from flexarm_env.plant.events import AGAIN, GEAR_OPEN, GEARS, NOTHING, found_at, next_event
 from flexarm_env.plant.glide import glide
 from flexarm_env.plant.laws import drive_law, sensor_law

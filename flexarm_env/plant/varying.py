@@ -42,7 +42,7 @@ SWEEPS = 15
 def constant_forcing(
     d: Numbers, n: Places, s: Numbers, command: float, mode: int, w: Numbers, force: int,
 ) -> None:  # fmt: skip
-    """Write what stays over the substep: command, constant torque, gears' side, held angles."""
+    """Write what stays over the substep: command, constant torque, gears' side, held angles; nothing changes in time."""
     row = record(n, mode) + n[FORCING]
     for i in range(2 * n[BLOCKS]):
         total = d[row + W_COMMAND] * command + d[row + W_ONE]
@@ -50,6 +50,7 @@ def constant_forcing(
             total += d[row + W_SIDE] * s[GEAR_SIDE]
             total += d[row + W_HELD_HUB] * s[HELD_HUB] + d[row + W_HELD_MOTOR] * s[HELD_MOTOR]
         w[force + i] = total
+        w[force + i + 2 * n[BLOCKS]] = w[force + i + 4 * n[BLOCKS]] = 0.0
         row += n[DRIVERS]
 
 
@@ -127,8 +128,6 @@ def collocate(
     new, free = nodes + 3 * count, motion + quantities
     evaluate_forces(d, n, s, mode, mode, w, nodes)
     constant_forcing(d, n, s, command, mode, w, force)
-    for i in range(4 * blocks):
-        w[force + 2 * blocks + i] = 0.0
     for half in range(2):
         advance(d, here + n[C0], here + n[C1], blocks, table, at + half * RESPONSE * blocks, s, HEADER, w, force, 0, trial)
         read_motion(d, n, s, mode, w, trial, w, free + half * quantities)
