@@ -17,7 +17,7 @@ class PositionFriction(Effect):
     parameters: ClassVar = {
         "amplitude": torque_size("size of the change, arm side", 0.05),
         "cycles": Parameter("1/rad", 0.05, 100.0, 3.0, meaning="n, cycles of the sine per radian times 2π"),
-        "phase": Parameter("rad", -3.15, 3.15, 0.0, meaning="φ, at angle zero"),
+        "phase": Parameter("rad", -6.3, 6.3, 0.0, meaning="φ, at angle zero"),
     }
     modifies = "coulomb"
     looks_like = "missing torque opposes motion and repeats with the angle, with opposite sign for the two directions"

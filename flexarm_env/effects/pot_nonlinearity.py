@@ -17,7 +17,7 @@ class PotNonlinearity(Effect):
     parameters: ClassVar = {
         "amplitude": Parameter("rad", 0.0, 1.0, 0.02, null=0.0, meaning="a, largest error"),
         "cycles": Parameter("1/rad", 0.3, 30.0, 2.0, meaning="n, cycles per radian of the arm times 2π"),
-        "phase": Parameter("rad", -3.15, 3.15, 0.0, meaning="φ, at angle zero"),
+        "phase": Parameter("rad", -6.3, 6.3, 0.0, meaning="φ, at angle zero"),
     }
     looks_like = "angle alone is off by what repeats with the angle; speed and strain fit"
     confused_with = ("sensor_offset",)

@@ -16,7 +16,7 @@ class TachRipple(Effect):
     equation = "y = ω (1 + a sin(θ_m + φ))"
     parameters: ClassVar = {
         "amplitude": Parameter("", 0.0, 1.0, 0.05, null=0.0, meaning="a, share of the speed"),
-        "phase": Parameter("rad", -3.15, 3.15, 0.0, meaning="φ, at angle zero"),
+        "phase": Parameter("rad", -6.3, 6.3, 0.0, meaning="φ, at angle zero"),
     }
     looks_like = "speed alone is off by a share that repeats with the motor's turns; angle and strain fit"
     confused_with = ("tach_filter",)

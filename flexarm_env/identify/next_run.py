@@ -60,7 +60,7 @@ class NextRun:
 
     def recording(self) -> Recording:
         """Return the input as a recording without signals, to be saved as CSV and played."""
-        return Recording.from_arrays("next-run", self.time, self.input_kind, self.command, {})
+        return Recording.from_arrays("next-run", self.time, self.input_kind, self.command, {}, measured=False)
 
 
 def propose(hypotheses: Mapping[str, Arm], interval: float) -> NextRun | None:
@@ -77,7 +77,7 @@ def propose(hypotheses: Mapping[str, Arm], interval: float) -> NextRun | None:
     rate = 1.0 / interval
     best: NextRun | None = None
     for name, command in _inputs(arms[0], rate):
-        played = Recording.from_arrays(name, np.arange(len(command)) / rate, arms[0].input, command, {})
+        played = Recording.from_arrays(name, np.arange(len(command)) / rate, arms[0].input, command, {}, measured=False)
         readings = [_readings(arm, played) for arm in arms]
         if not all(np.isfinite(r).all() for r in readings):
             continue

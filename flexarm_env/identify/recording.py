@@ -103,6 +103,7 @@ class Recording:
         signals: Mapping[str, ArrayLike],
         reference: ArrayLike | None = None,
         conditions: Mapping[str, float] | None = None,
+        measured: bool = True,
     ) -> Recording:
         """Return a recording of copies of (n,) arrays in SI, checked as a file is.
 
@@ -114,6 +115,7 @@ class Recording:
             signals: (n,) each, by name, in SI.
             reference: (n,) [rad].
             conditions: known conditions in SI.
+            measured: whether there must be a signal; False takes commands alone, to be played.
 
         Raises:
             InputError: for an unknown name, lengths that differ, fewer than two samples, numbers that are not
@@ -129,7 +131,7 @@ class Recording:
             columns["reference"] = reference
         try:
             arrays = {column: _array(column, values) for column, values in columns.items()}
-            return _recording(name, arrays, dict(conditions or {}), ())
+            return _recording(name, arrays, dict(conditions or {}), (), measured)
         except InputError as error:
             raise InputError(f"{name}: {error}") from None
 

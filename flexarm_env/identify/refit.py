@@ -128,7 +128,7 @@ def _go_on(found: Refit, nominal: Arm, data: Data) -> Refit:
     for _ in range(MOST_AGAIN):
         if now < WELL or not ways:
             break
-        other = refit(_put_back(found, nominal, ways[0]), nominal, data)
+        other = refit(put_back(found, nominal, ways[0]), nominal, data)
         then = score(other.arm, data, held_out=False).windows
         ways = [*ways[1:], ways[0]] if then < GOES_ON * now else ways[1:]
         if then < now:
@@ -136,7 +136,7 @@ def _go_on(found: Refit, nominal: Arm, data: Data) -> Refit:
     return found
 
 
-def _put_back(found: Refit, nominal: Arm, strayed: float) -> Arm:
+def put_back(found: Refit, nominal: Arm, strayed: float) -> Arm:
     """Return the arm with those constants as they were nominally that moved by more standard deviations of their priors."""
     pairs = zip(found.coordinates, found.solution.x, strict=True)
     far = [c.path for c, x in pairs if c.is_constant and abs(x) > strayed * c.prior]

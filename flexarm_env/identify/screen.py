@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -97,14 +97,25 @@ def starts_of(base: Base, effect: str) -> list[dict[str, float]]:
     return [values for start in base.problem.arm.known[effect].starts() for values in _by_sensor(base, effect, start)]
 
 
+def first_start(arm: Arm, effect: str, scales: Mapping[str, float]) -> dict[str, float]:
+    """Return the values from which an effect is tried first."""
+    return _scaled(arm, effect, arm.known[effect].starts()[0], scales)
+
+
 def _by_sensor(base: Base, effect: str, start: dict[str, float]) -> list[dict[str, float]]:
     """Return a start in the scales of the data; for offsets, one for each sensor."""
     known, data = base.problem.arm.known[effect], base.problem.data
     if effect == "sensor_offset":
         noise = dict(zip(data.signals, data.noise, strict=True))
         return [{key: (float(noise[key]) if key == signal else 0.0) for key in known.parameters} for signal in noise]
-    values = {key: value * data.scales.get(known.parameters[key].unit, 1.0) for key, value in start.items()}
-    return [{key: min(max(v, known.parameters[key].low), known.parameters[key].high) for key, v in values.items()}]
+    return [_scaled(base.problem.arm, effect, start, data.scales)]
+
+
+def _scaled(arm: Arm, effect: str, start: Mapping[str, float], scales: Mapping[str, float]) -> dict[str, float]:
+    """Return a start in the scales of the data, within the bounds."""
+    parameters = arm.known[effect].parameters
+    values = {key: value * scales.get(parameters[key].unit, 1.0) for key, value in start.items()}
+    return {key: min(max(v, parameters[key].low), parameters[key].high) for key, v in values.items()}
 
 
 def unexplained(base: Base, residual: Floats) -> Floats:

@@ -11,7 +11,7 @@ from joblib import Parallel, delayed
 from flexarm_env.arm import Arm
 from flexarm_env.identify.data import Data
 from flexarm_env.identify.problem import Score, score
-from flexarm_env.identify.refit import Progress, Refit, as_it_is, polish, refit
+from flexarm_env.identify.refit import Progress, Refit, as_it_is, polish, put_back, refit
 from flexarm_env.identify.screen import (
     CANDIDATE_LEVELS,
     Base,
@@ -19,12 +19,16 @@ from flexarm_env.identify.screen import (
     attempt,
     best_trials,
     candidates,
+    first_start,
     screening_base,
     signatures,
 )
 
-#: How many candidates are refitted in full in each round, and how many if those leave the model far off.
-FINALISTS, MOST_FINALISTS = 4, 12
+#: How many candidates are refitted in full in each round.
+FINALISTS = 4
+#: Constants that strayed by more standard deviations than this are put back before every effect is tried with all constants,
+#: in a fit through these levels, of so many iterations each.
+BENT, BRIEF_LEVELS, BRIEF_ITERATIONS = 1.0, (0.003,), 2
 #: And only those that lower the cost of the screening to the first share, by no less than the second of what the best does.
 LEAST_CHANGE, LEAST_OF_BEST = 0.97, 0.3
 #: A held-out error below this leaves nothing to explain.
@@ -101,14 +105,10 @@ class Search:
         lowest = min(t.cost for t in trials)
         level = min(LEAST_CHANGE * control.cost, control.cost - LEAST_OF_BEST * (control.cost - lowest))
         better = [t for t in trials if t.effect and t.cost < level]
-        found: list[Hypothesis] = []
-        for first in range(0, MOST_FINALISTS, FINALISTS):
-            batch = better[first : first + FINALISTS]
-            if batch:
-                names, arms = [(t.effect,) for t in batch], [t.arm for t in batch]
-                found += self._refit_all(names, arms, done + 0.6 * share, 0.2 * share, thorough=first > 0)
-            if not batch or min(h.score.windows for h in found) < FAR_OFF:
-                break
+        names, arms = [(t.effect,) for t in better[:FINALISTS]], [t.arm for t in better[:FINALISTS]]
+        found = self._refit_all(names, arms, done + 0.5 * share, 0.1 * share)
+        if not any(excess(h.score.windows) < (1.0 - LEAST_TOTAL_GAIN) * excess(self.best.windows) for h in found):
+            found += self._try_all(trials, [h.effects[0] for h in found], done + 0.6 * share, 0.2 * share)
         if found and not any(self._is_enough(h.score) for h in found):
             found += self._with_offset(found, done + 0.8 * share, 0.2 * share)
         if self.accepted:
@@ -123,6 +123,26 @@ class Search:
                 self._remember(hypothesis.effects[0], gain, hypothesis.refit)
         possible = [h for h in found if not _at_bound(h)]
         return bool(possible) and self._accept(possible)
+
+    def _try_all(self, trials: list[Trial], tried: Sequence[str], done: float, share: float) -> list[Hypothesis]:
+        """Return the best hypotheses when every effect is fitted together with all constants, none of them bent out of shape.
+
+        Constants that made up for the missing effect leave nothing for its signature to explain.
+        """
+        began = {trial.effect: trial.arm.effects[trial.effect] for trial in trials if trial.effect}
+        names = [n for n in candidates(self.found.arm) if self.found.arm.known[n].fitted and n not in tried]
+        straight = put_back(self.found, self.nominal, BENT)
+        arms = [straight.with_effect(n, **(began.get(n) or first_start(straight, n, self.data.scales))) for n in names]
+        tasks = [delayed(_fit_briefly)(arm, self.nominal, self.data) for arm in arms]
+        fits: list[tuple[float, str, Refit]] = []
+        for i, (name, (error, found)) in enumerate(zip(names, self._parallel(tasks), strict=True)):
+            fits.append((error, name, found))
+            self.say(done + 0.6 * share * (i + 1) / len(tasks), f"fitting {name} and all constants")
+        fits.sort(key=lambda fit: fit[0])
+        best = fits[:FINALISTS]
+        chosen = [f.arm for _, _, f in best]
+        far = best[0][0] > FAR_OFF if best else False
+        return self._refit_all([(n,) for _, n, _ in best], chosen, done + 0.6 * share, 0.4 * share, thorough=far)
 
     def _accept(self, found: list[Hypothesis]) -> bool:
         """Take the best hypothesis if it removes enough; the simplest of those that remove nearly as much."""
@@ -218,7 +238,7 @@ class Search:
         return [unmoved] if helped > REFIT_FAILS else [self.found, unmoved]
 
     def _refit_all(
-        self, effects: Sequence[tuple[str, ...]], arms: Sequence[Arm], done: float, share: float, thorough: bool
+        self, effects: Sequence[tuple[str, ...]], arms: Sequence[Arm], done: float, share: float, thorough: bool = False
     ) -> list[Hypothesis]:
         pairs = zip(effects, arms, strict=True)
         tasks = [delayed(_refit_arm)(e, arm, self.nominal, self.data, thorough) for e, arm in pairs]
@@ -276,6 +296,12 @@ def _refit_arm(effects: tuple[str, ...], arm: Arm, nominal: Arm, data: Data, tho
     if thorough:
         found = polish(found, nominal, data)
     return Hypothesis(effects, found, score(found.arm, data))
+
+
+def _fit_briefly(arm: Arm, nominal: Arm, data: Data) -> tuple[float, Refit]:
+    """Return an arm fitted in a few steps, and its error on the fitted part."""
+    found = refit(arm, nominal, data, BRIEF_LEVELS, BRIEF_ITERATIONS)
+    return score(found.arm, data, held_out=False).windows, found
 
 
 def _at_bound(hypothesis: Hypothesis) -> bool:
