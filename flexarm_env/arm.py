@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from flexarm_env.display import Shown
 from flexarm_env.effects import Catalogue, Effect, catalogue
 from flexarm_env.effects.catalogue import LAW_PORTS
 from flexarm_env.errors import InputError, did_you_mean
@@ -24,7 +25,7 @@ Values = Mapping[str, float]
 
 
 @dataclass(frozen=True)
-class Arm:
+class Arm(Shown):
     """A flexible (or rigid) arm. Immutable: every change returns another arm.
 
     Attributes:

@@ -67,12 +67,13 @@ def compare(
     """Replay recordings through an arm: error per signal, regime and frequency band, against the noise."""
     _check(json, report, pictures=report is not None)
     model, runs = _load(recordings, arm, columns, effects)
-    from flexarm_env.cli import tables, work
+    from flexarm_env.cli import outputs, tables, work
 
     result = work.compare(model, runs)
     work.finish("compare", arm, runs, None, json, work.comparison_json(result), tables.comparison(result))
     if report is not None:
-        work.report(report, result, None, None)
+        line = _command("compare", recordings, arm, columns, effects)
+        work.report(report, runs, result, None, line | outputs.provenance("compare", arm, runs, None))
 
 
 @app.command()
@@ -90,13 +91,15 @@ def diagnose(
     """Tell whether constants are wrong or an effect is missing, which one, how sure, and what would settle it."""
     _check(json, report, save, pictures=report is not None)
     model, runs = _load(recordings, arm, columns, effects)
-    from flexarm_env.cli import tables, work
+    from flexarm_env.cli import outputs, tables, work
 
     result = work.diagnose(model, runs, seed, jobs)
     work.finish("diagnose", arm, runs, seed, json, result.as_json(), tables.diagnosis(result))
     _save(result.arm, save)
     if report is not None:
-        work.report(report, work.compare(result.nominal, runs), work.compare(result.arm, runs), result)
+        line = _command("diagnose", recordings, arm, columns, effects, seed)
+        made = line | outputs.provenance("diagnose", arm, runs, seed)
+        work.report(report, runs, work.compare(result.nominal, runs), result, made)
     if result.verdict in ("unknown", "insufficient_data"):
         raise typer.Exit(1)
 
@@ -220,6 +223,24 @@ def _check(*places: Path | None, pictures: bool = False) -> None:
     outputs.check_place(*places)
     if pictures:
         outputs.need_plots()
+
+
+def _command(
+    name: str,
+    recordings: Sequence[Path],
+    arm: str,
+    columns: Path | None,
+    specs: Sequence[str] | None,
+    seed: int | None = None,
+) -> dict[str, str]:
+    """Return the command line that does this again, for the report."""
+    import shlex
+
+    words = ["flexarm", name, *map(str, recordings), "--arm", arm]
+    words += ["--columns", str(columns)] if columns is not None else []
+    words += [word for spec in specs or () for word in ("--effects", spec)]
+    words += ["--seed", str(seed)] if seed is not None else []
+    return {"command_line": shlex.join(words)}
 
 
 def _arm(name: str, specs: Sequence[str] | None) -> Arm:

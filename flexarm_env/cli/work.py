@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +17,6 @@ from flexarm_env.cli import outputs, tables
 from flexarm_env.cli.progress import progress
 from flexarm_env.effects.catalogue import load_effect
 from flexarm_env.errors import InputError
-from flexarm_env.files import write_whole
 from flexarm_env.identify.recording import Recording
 from flexarm_env.pictures import words
 
@@ -106,11 +105,14 @@ def addition_json(result: Addition) -> dict[str, Any]:
     }
 
 
-def report(path: Path, before: Comparison, after: Comparison | None, diagnosis: Diagnosis | None) -> None:
-    """Write the page, whole or not at all."""
-    from flexarm_env.pictures.page import page
+def report(
+    path: Path, recordings: Sequence[Recording], before: Comparison, diagnosis: Diagnosis | None, made: Mapping[str, Any]
+) -> None:
+    """Write the page, with a progress bar."""
+    from flexarm_env.cli.report import write_report
 
-    write_whole(path, page(before, after, diagnosis))
+    with progress("writing the report") as bar:
+        write_report(path, recordings, before, diagnosis, made, bar)
 
 
 def simulate(

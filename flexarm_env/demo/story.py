@@ -50,8 +50,12 @@ def tell(output: Path, seed: int = 0, json: Path | None = None) -> bool:
         _heading(out, "flexarm compare RECORDINGS --arm THE-NEW-ARM", words.comparison(after))
         content |= {"add": work.addition_json(added), "compare_after": work.comparison_json(after)}
     out.print(Text(_resolve(added)))
-    made = _draw(output, before, after, diagnosis)
-    content |= outputs.provenance("demo", ARM, recordings, seed)
+    provenance = outputs.provenance("demo", ARM, recordings, seed)
+    page = output / "report.html"
+    command = {"command_line": f"flexarm diagnose flexarm_env/demo --arm {ARM} --seed {seed}"}
+    work.report(page, recordings, before, diagnosis, provenance | command)
+    made = [*_draw(output, before, after, diagnosis), page]
+    content |= provenance
     outputs.write_json(output / "demo.json", content)
     outputs.write_json(json, content)
     out.print(Text(f"In {output}: {', '.join(path.name for path in [*made, output / 'demo.json'])}"))
@@ -86,17 +90,14 @@ def _resolve(added: Addition | None) -> str:
 
 
 def _draw(output: Path, before: Comparison, after: Comparison, diagnosis: Diagnosis) -> list[Path]:
-    """Write the pictures and the page; return their paths."""
+    """Write the pictures; return their paths."""
     from flexarm_env.pictures import curves
 
     names = ("as given", f"with {' and '.join(diagnosis.effects)}" if diagnosis.effects else "refitted")
     steps = words.steps_of(diagnosis.error, diagnosis.effects)
     free = words.steps_of(diagnosis.free_run, diagnosis.effects)
-    made = [
+    return [
         *curves.save(curves.loop(before, after, diagnosis), output / "loop"),
         *curves.save(curves.overlay(before, after, "square", names), output / "overlay"),
         *curves.save(curves.waterfall(steps, free), output / "waterfall"),
     ]
-    page = output / "report.html"
-    work.report(page, before, after, diagnosis)
-    return [*made, page]

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flexarm_env.display import Shown
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import write_whole
 from flexarm_env.identify.columns import (
@@ -41,7 +42,7 @@ GAP = 3.0  # a step of more than this many median steps is a gap
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Recording:
+class Recording(Shown):
     """One run of an arm, of n samples in SI. Sampling need not be even.
 
     Attributes:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
+from flexarm_env.display import Shown
 
 if TYPE_CHECKING:
     from flexarm_env.identify.hiding import Hiding
@@ -87,7 +88,7 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Comparison(Shown):
     """An arm against recordings: where it fails.
 
     Attributes:
@@ -167,7 +168,7 @@ class Candidate:
 
 
 @dataclass(frozen=True)
-class Diagnosis:
+class Diagnosis(Shown):
     """What is wrong with an arm, and the arm that is better.
 
     Attributes:

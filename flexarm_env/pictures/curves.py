@@ -16,9 +16,9 @@ from flexarm_env.errors import InputError
 from flexarm_env.identify.results import Candidate, Comparison, Diagnosis, Replay
 from flexarm_env.pictures import words
 from flexarm_env.pictures.style import AFTER, BEFORE, INK, MEASURED, QUIET, STYLE
+from flexarm_env.pictures.telling import ZOOM, most_telling, replay_of
 
 P = ParamSpec("P")
-ZOOM = 1.6  # [s], of the loop's first panel
 BARS = 6
 
 
@@ -59,7 +59,7 @@ def overlay(before: Comparison, after: Comparison, recording: str, names: tuple[
         recording: its name.
         names: what the two arms are called in the legend.
     """
-    old, new = _replay(before, recording), _replay(after, recording)
+    old, new = replay_of(before, recording), replay_of(after, recording)
     signals = words.signals_of(list(old.measured))
     figure = Figure(figsize=(9.5, 1.0 + 2.45 * len(signals)), layout="constrained")
     ratios = [part for _ in signals for part in (2.2, 1.0)]
@@ -98,8 +98,8 @@ def loop(before: Comparison, after: Comparison, diagnosis: Diagnosis) -> Figure:
     grid = figure.add_gridspec(2, 3, width_ratios=[1.5, 1.0, 0.85], height_ratios=[2.0, 1.0])
     top = figure.add_subplot(grid[0, 0])
     bottom = figure.add_subplot(grid[1, 0], sharex=top)
-    recording, signal, start = _most_telling(before, after)
-    old, new = _replay(before, recording), _replay(after, recording)
+    recording, signal, start = most_telling(before, after)
+    old, new = replay_of(before, recording), replay_of(after, recording)
     name = words.LABELS[signal][0]
     _curves(top, old, new, signal, ("model as given", f"with {' and '.join(diagnosis.effects) or 'new constants'}"))
     _residuals(bottom, old, new, signal, before.noise[signal])
@@ -115,10 +115,6 @@ def loop(before: Comparison, after: Comparison, diagnosis: Diagnosis) -> Figure:
     _falling(figure.add_subplot(grid[:, 2]), steps, "3  The held-out error falls")
     figure.align_ylabels([top, bottom])
     return figure
-
-
-def _replay(comparison: Comparison, recording: str) -> Replay:
-    return next(replay for replay in comparison.replays if replay.name == recording)
 
 
 def _curves(axes: Axes, old: Replay, new: Replay, signal: str, names: tuple[str, str]) -> None:
@@ -146,21 +142,6 @@ def _fit_height(axes: Axes, start: float, stop: float) -> None:
 def _inside(line: Any, start: float, stop: float) -> Any:
     x = np.asarray(line.get_xdata())
     return (x >= start) & (x <= stop)
-
-
-def _most_telling(before: Comparison, after: Comparison) -> tuple[str, str, float]:
-    """Return recording, signal and start [s] of the stretch whose residual falls most, in units of the noise."""
-    best, found = -np.inf, ("", "", 0.0)
-    for old in before.replays:
-        new = _replay(after, old.name)
-        span = max(int(ZOOM / float(np.median(np.diff(old.time)))), 1)
-        for signal in words.signals_of(list(old.measured)):
-            power = [((r.measured[signal] - r.windows[signal]) / before.noise[signal]) ** 2 for r in (old, new)]
-            sums = np.cumsum(np.concatenate([[0.0], power[0] - power[1]]))
-            gains = sums[span:] - sums[:-span]
-            if gains.size and gains.max() > best:
-                best, found = float(gains.max()), (old.name, signal, float(old.time[int(gains.argmax())]))
-    return found
 
 
 def _ranking(axes: Axes, candidates: Sequence[Candidate]) -> None:

@@ -1,4 +1,7 @@
-"""Colours that a colour-blind reader can tell apart (Okabe and Ito, 2008), and matplotlib's settings."""
+"""Colours that a colour-blind reader can tell apart (Okabe and Ito, 2008), and the settings of both kinds of figures.
+
+Nothing is told by colour alone: models differ in dashes, bars in patterns, regimes in symbols.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,19 @@ BEFORE = "#d55e00"
 AFTER = "#0072b2"
 QUIET = "#b8b8b8"
 INK = "#222222"
+GRID = "#e6e6e6"
+
+#: What each regime of motion is called, with colour and symbol; stuck, moving slowly, moving fast.
+REGIMES = (("stuck", "#222222", "diamond-open"), ("creeping", BEFORE, "x"), ("moving", AFTER, "circle"))
+
+#: Lines of a page's figures.
+MEASURED_LINE: dict[str, Any] = {"color": MEASURED, "width": 3.5}
+BEFORE_LINE: dict[str, Any] = {"color": BEFORE, "width": 1.4, "dash": "5px,2px"}
+AFTER_LINE: dict[str, Any] = {"color": AFTER, "width": 1.4}
+#: Bars of a page's figures: as given, in between, final.
+BEFORE_BAR = {"color": BEFORE, "pattern": {"shape": "/", "fgcolor": "white", "size": 7, "solidity": 0.25}}
+QUIET_BAR = {"color": QUIET}
+AFTER_BAR = {"color": AFTER}
 
 STYLE: dict[str, Any] = {
     "font.size": 9.0,
@@ -20,7 +36,7 @@ STYLE: dict[str, Any] = {
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.grid": True,
-    "grid.color": "#e6e6e6",
+    "grid.color": GRID,
     "grid.linewidth": 0.6,
     "axes.axisbelow": True,
     "xtick.color": INK,

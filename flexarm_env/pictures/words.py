@@ -17,6 +17,7 @@ LABELS = {
     "tip_deflection": ("tip deflection", "m"),
 }
 NOTHING = "–"
+_BARS = "▁▂▃▄▅▆▇█"
 PARTS = ("moving fast", "moving slowly", "stuck")
 
 
@@ -67,6 +68,20 @@ def parameters_of(estimates: Iterable[Estimate]) -> str:
 def constant_name(estimate: Estimate) -> str:
     """Return the short name of a fitted value."""
     return short_name(estimate.path)
+
+
+def counted(count: int, noun: str) -> str:
+    """Return "1 recording", "3 recordings"."""
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def sparkline(values: Sequence[float], largest: float | None = None) -> str:
+    """Return values as a row of bars, from 0 to the largest: "▁▂▇█"."""
+    finite = [value for value in values if math.isfinite(value)]
+    top = max(finite, default=0.0) if largest is None else largest
+    if top <= 0.0:
+        return "▁" * len(values)
+    return "".join(_BARS[min(int(len(_BARS) * v / top), len(_BARS) - 1)] if math.isfinite(v) else " " for v in values)
 
 
 def signals_of(rows: Sequence[str]) -> list[str]:

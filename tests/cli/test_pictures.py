@@ -16,7 +16,7 @@ def test_reports_are_whole_pages_without_a_network(flexarm, identify, runs, tmp_
         assert text.rstrip().endswith("</html>")
         assert text.count("<script src=") == 0
         assert "Recording square" in text
-        assert text.count('<div class="figure"') >= 2
+        assert text.count('<div class="plot"') >= 2
 
 
 def test_a_missing_library_for_pictures_is_one_line(flexarm, identify, runs, tmp_path, monkeypatch):

@@ -1,4 +1,4 @@
-"""The page of a comparison: small, whole without a network, and true to the curves."""
+"""The report: small, whole without a network, true to the curves, and with everything that a reader asks for."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import base64
 import gzip
 import json
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,55 +14,53 @@ import pytest
 pytest.importorskip("plotly")
 
 from plotly.offline import get_plotlyjs
+from picture_results import SIGNALS, comparison, diagnosis, recordings
 
-from flexarm_env import Arm
-from flexarm_env.identify.results import Comparison, Replay
-from flexarm_env.pictures.page import page
+from flexarm_env.pictures.page import Findings, page
 
-SIGNALS = {"arm_angle": 2e-3, "motor_speed": 0.03, "strain_mid": 0.01, "strain_base": 0.01}
-
-
-def replay(name: str, samples: int, seed: int) -> Replay:
-    """A recording of noise around motion, which packs worse than any that is measured."""
-    draw = np.random.default_rng(seed)
-    time = 0.002 * np.arange(samples)
-    parts = [
-        {s: 3.0 * np.sin(2.0 * time) + draw.normal(0.0, times * noise, samples) for s, noise in SIGNALS.items()}
-        for times in (1.0, 5.0, 20.0)
-    ]
-    return Replay(name, time, *parts, np.zeros(samples, dtype=np.int64))
+PLACE = re.compile(r'id="(figure-[^"]*)" style="[^"]*"><script type="text/plain">([^<]*)</script>')
+REDO = {"command_line": "flexarm diagnose runs --seed 7", "version": "0.1.0", "commit": "abcdef", "seed": 7}
 
 
-def comparison(samples: int, seed: int) -> Comparison:
-    replays = [replay(name, samples, seed + i) for i, name in enumerate(("pulse", "square", "sweep"))]
-    return Comparison(Arm.load("thesis"), [], replays, SIGNALS, 1.5, 12.0)
+def unpacked(block: str) -> str:
+    return gzip.decompress(base64.b64decode(block)).decode()
 
 
-def unpacked(text: str) -> tuple[str, list[dict]]:
-    """Plotly's library and the figures of a page, as the browser gets them."""
-    blocks = re.findall(r'<script type="text/plain"([^>]*)>([^<]*)</script>', text)
-    texts = [(place, gzip.decompress(base64.b64decode(block)).decode()) for place, block in blocks]
-    return next(t for place, t in texts if place), [json.loads(t) for place, t in texts if not place]
+def figures(text: str) -> dict[str, dict]:
+    """The figures of a page by their place, as the browser gets them."""
+    found = {place.removeprefix("figure-"): json.loads(unpacked(block)) for place, block in PLACE.findall(text)}
+    assert len(found) == text.count('<div class="plot"'), "two figures have one place"
+    return found
+
+
+def visible(text: str) -> str:
+    """What is there to read."""
+    return re.sub(r"<[^>]+>", " ", re.sub(r"<(script|style)[^>]*>.*?</\1>", "", text, flags=re.DOTALL))
+
+
+def one_of(result, after=None, **more) -> str:
+    return page(Findings(result, recordings(result), after, **more))
 
 
 def test_a_page_of_the_demo_s_size_is_below_5_megabytes():
-    assert len(page(comparison(5000, 0), comparison(5000, 10)).encode()) < 5e6
+    text = one_of(comparison(5000, 0), comparison(5000, 10), diagnosis=diagnosis(), provenance=REDO)
+    assert len(text.encode()) < 5e6
 
 
 def test_it_holds_all_that_it_needs():
-    text = page(comparison(200, 0))
-    library, figures = unpacked(text)
-    assert library == get_plotlyjs()
-    assert len(figures) == 3
+    text = one_of(comparison(200, 0))
+    (library,) = re.findall(r'<script type="text/plain" id="plotly">([^<]*)</script>', text)
+    assert unpacked(library) == get_plotlyjs()
+    assert {"recording-pulse", "recording-square", "recording-sweep"} <= set(figures(text))
     assert not re.search(r"<(script|link|img|iframe)[^>]*(src|href)=", text)
     assert "http" not in re.sub(r'<script type="text/plain"[^>]*>[^<]*</script>', "", text)
 
 
 def test_curves_are_exact_to_a_fiftieth_of_the_noise():
     result = comparison(300, 4)
-    _, figures = unpacked(page(result))
-    for one, figure in zip(result.replays, figures, strict=True):
-        drawn = iter(figure["data"])
+    drawn_figures = figures(one_of(result))
+    for one in result.replays:
+        drawn = iter(drawn_figures[f"recording-{one.name}"]["data"])
         for signal, noise in SIGNALS.items():
             for expected in (one.measured, one.windows, None, one.free, None):
                 y = np.array(next(drawn)["y"])
@@ -74,6 +73,87 @@ def test_a_replay_that_ran_away_leaves_a_gap():
     result = comparison(50, 5)
     result.replays[0].free["arm_angle"][20:] = np.nan
     result.replays[0].windows["arm_angle"][20:] = np.inf
-    _, figures = unpacked(page(result))
+    drawn = figures(one_of(result))["recording-pulse"]["data"]
     for i in (1, 3):
-        assert figures[0]["data"][i]["y"][20:] == [None] * 30
+        assert drawn[i]["y"][20:] == [None] * 30
+
+
+def test_the_verdict_stands_on_top():
+    found = diagnosis()
+    words = visible(one_of(comparison(200, 0), comparison(200, 3), diagnosis=found))
+    order = [
+        "Missing: backlash",
+        "Where it fails",
+        "What is missing",
+        "How the error fell",
+        "Which effect",
+        "Constants",
+        "Residuals",
+    ]
+    assert [words.index(part) for part in order] == sorted(words.index(part) for part in order)
+
+
+def test_each_step_has_a_bar_and_the_noise_is_the_last():
+    drawn = figures(one_of(comparison(200, 0), comparison(200, 3), diagnosis=diagnosis()))["glance-fall"]["data"]
+    solid = [bar for bar in drawn if "base" not in bar]
+    assert [bar["x"] for bar in solid] == [[4.1], [3.7], [1.02], [1.0]]
+    assert solid[-1]["y"] == ["noise floor"]
+
+
+def test_residuals_stand_against_every_driver_by_regime():
+    result = comparison(400, 0)
+    drawn = figures(one_of(result, comparison(400, 3)))
+    for signal in SIGNALS:
+        for driver in ("time--one-recording-after-another", "arm-angle", "arm-speed", "current", "spectrum"):
+            assert f"{signal}-{driver}".replace("_", "-") in drawn
+    names = [trace["name"] for trace in drawn["arm-angle-current"]["data"]]
+    assert names == ["stuck", "creeping", "moving", "median"] * 2
+    symbols = {trace["marker"]["symbol"] for trace in drawn["arm-angle-current"]["data"] if "marker" in trace}
+    assert len(symbols) == 3  # told apart without colour
+
+
+def test_the_spectrum_of_white_noise_is_flat_at_its_size():
+    result = comparison(4000, 1)
+    for one in result.replays:
+        draw = np.random.default_rng(3)
+        for signal, noise in SIGNALS.items():
+            one.windows[signal][:] = one.measured[signal] - draw.normal(0.0, 3.0 * noise, 4000)
+    drawn = figures(one_of(result))["arm-angle-spectrum"]["data"][0]
+    assert float(np.mean(np.square(drawn["y"]))) == pytest.approx(9.0, rel=0.05)
+
+
+def test_ranking_constants_and_rivals_have_their_intervals():
+    words = visible(one_of(comparison(200, 0), comparison(200, 3), diagnosis=diagnosis()))
+    assert "gap = 0.0612 rad (0.0583 to 0.0641)" in words
+    assert "0.3291 to 0.3333" in words
+    assert "cannot be told from it" in words
+
+
+def test_what_could_hide_and_the_next_run_are_shown_where_they_are_known():
+    plain = one_of(comparison(200, 0), comparison(200, 3), diagnosis=diagnosis())
+    assert "What could still hide" not in plain
+    assert "The next run" not in plain
+    run = {"why": "A slow ramp breaks away.", "separates": ["stiction", "stribeck"]}
+    run["input"] = {"time": np.arange(50) * 0.01, "command": np.linspace(-1.0, 1.0, 50)}
+    more = vars(diagnosis()) | {"smallest": {"stiction": {"parameter": "extra", "value": 0.0123, "unit": "N*m"}}, "next_run": run}
+    text = one_of(comparison(200, 0), comparison(200, 3), diagnosis=SimpleNamespace(**more))
+    words = visible(text)
+    assert re.search(r"stiction\s+extra\s+0.0123\s+N·m", words)
+    assert "It tells apart: stiction and stribeck." in words
+    assert figures(text)["next-run"]["data"][0]["y"][-1] == pytest.approx(1.0, abs=1e-3)
+
+
+def test_it_says_how_to_redo_it():
+    result = comparison(100, 0)
+    runs = recordings(result)
+    object.__setattr__(runs[0], "sha256", "c0ffee")
+    words = visible(page(Findings(result, runs, provenance=REDO)))
+    for part in ("flexarm diagnose runs --seed 7", "FlexArm 0.1.0", "abcdef", "seed 7", "c0ffee"):
+        assert part in words
+
+
+def test_names_are_no_markup():
+    result = comparison(100, 0)
+    object.__setattr__(result.replays[0], "name", "<b>run</b>")
+    text = page(Findings(result, recordings(comparison(100, 0))))
+    assert "<b>run</b>" not in text

@@ -1,0 +1,71 @@
+"""The page of a comparison or a diagnosis, with all that it needs worked out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import flexarm_env
+from flexarm_env.cli.progress import Progress
+from flexarm_env.files import write_whole
+from flexarm_env.identify.effect_curve import UNITS, EffectCurve, effect_curve, unexplained_curve
+from flexarm_env.identify.recording import Recording
+from flexarm_env.identify.results import Comparison, Diagnosis
+
+
+def write_report(
+    path: Path,
+    recordings: Sequence[Recording],
+    before: Comparison,
+    diagnosis: Diagnosis | None,
+    provenance: Mapping[str, Any],
+    progress: Progress | None = None,
+) -> None:
+    """Write the page, whole or not at all.
+
+    Args:
+        path: of the file.
+        recordings: in the order of the comparison's replays.
+        before: the arm as it came.
+        diagnosis: of the same recordings, if there is one.
+        provenance: how to redo it.
+        progress: called with the share done and what is being done.
+
+    Raises:
+        InputError: if the file cannot be written.
+    """
+    write_whole(path, report(recordings, before, diagnosis, provenance, progress))
+
+
+def report(
+    recordings: Sequence[Recording],
+    before: Comparison,
+    diagnosis: Diagnosis | None,
+    provenance: Mapping[str, Any],
+    progress: Progress | None = None,
+) -> str:
+    """Return the page's HTML; arguments as those of `write_report`."""
+    from flexarm_env.pictures.page import Findings, page
+
+    say = progress or (lambda done, text: None)
+    after, curves, without = None, [], {}
+    if diagnosis is not None:
+        say(0.1, "replaying the corrected arm")
+        after = flexarm_env.compare(diagnosis.arm, recordings)
+        say(0.4, "drawing the effects")
+        curves = _curves(diagnosis, recordings)
+        drawn = {curve.effect for curve in curves}
+        arms = {e: after.arm.without_effect(e) for e in diagnosis.effects if e not in drawn and e in after.arm.effects}
+        without = {effect: flexarm_env.compare(arm, recordings) for effect, arm in arms.items()}
+    say(0.7, "writing the page")
+    return page(Findings(before, recordings, after, diagnosis, curves, without, provenance))
+
+
+def _curves(diagnosis: Diagnosis, recordings: Sequence[Recording]) -> list[EffectCurve]:
+    """Return the curves of accepted effects that act on the hub, or what is left where nothing explains it."""
+    if diagnosis.verdict == "unknown":
+        found = [unexplained_curve(diagnosis.arm, driver, recordings) for driver in UNITS]
+    else:
+        found = [effect_curve(diagnosis.nominal, diagnosis.arm, effect, recordings) for effect in diagnosis.effects]
+    return [curve for curve in found if curve is not None]

@@ -1,0 +1,153 @@
+"""An effect's own curve: the torque that the data ask for against what drives it, beside the law as fitted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.hub_torque import HubMotion, acts_on_hub, changes, hub_torque, law_torque
+from flexarm_env.identify.recording import Recording
+
+Floats = NDArray[np.float64]
+
+UNITS = {"speed": "rad/s", "angle": "rad", "time": "s"}
+#: The hub counts as moving above this share of its largest speed.
+MOVING = 0.01
+BINS, FEWEST_IN_BIN, LINE_POINTS, MOST_POINTS = 32, 12, 200, 1500
+#: Ends of the band that holds the middle half of a bin.
+QUARTILES = (25.0, 75.0)
+
+
+@dataclass(frozen=True)
+class EffectCurve:
+    """Torque against what drives it.
+
+    Attributes:
+        effect: the catalogue's name; "" for what nothing explains.
+        driver: "speed" [rad/s], "angle" [rad] or "time" [s] of the hub.
+        quantity: what the torque is, in words.
+        x: (points,) the driver at single samples.
+        y: (points,) the data's estimate there [Nm].
+        bins: (bins,) the driver.
+        middle: (bins,) median of the data's estimate [Nm].
+        low: (bins,) its lower quartile.
+        high: (bins,) its upper quartile.
+        line: (points,) the driver.
+        fitted: (points,) the law of the corrected arm [Nm].
+        given: (points,) that of the arm as it came [Nm].
+    """
+
+    effect: str
+    driver: str
+    quantity: str
+    x: Floats
+    y: Floats
+    bins: Floats
+    middle: Floats
+    low: Floats
+    high: Floats
+    line: Floats
+    fitted: Floats
+    given: Floats
+
+
+def effect_curve(nominal: Arm, corrected: Arm, effect: str, recordings: Sequence[Recording]) -> EffectCurve | None:
+    """Return the curve of an effect that acts on the hub; None for others, and where too little moves.
+
+    What depends on speed is shown as the whole friction; anything else as the effect's own share, less what the corrected
+    arm has besides.
+
+    Args:
+        nominal: the arm as it came.
+        corrected: the arm with the effect.
+        effect: its name.
+        recordings: of the machine.
+    """
+    if effect not in corrected.effects or not acts_on_hub(corrected, effect):
+        return None
+    driver = driver_of(corrected, effect)
+    names = [name for name in corrected.effects if acts_on_hub(corrected, name)]
+    shown = [name for name in names if driver_of(corrected, name) == "speed"] if driver == "speed" else [effect]
+    rest = [name for name in names if name not in shown]
+    return _curve(nominal, corrected, effect, driver, shown, rest, recordings)
+
+
+def unexplained_curve(arm: Arm, driver: str, recordings: Sequence[Recording]) -> EffectCurve | None:
+    """Return the torque on the hub that an arm does not explain, against a driver; None where too little moves."""
+    names = [name for name in arm.effects if acts_on_hub(arm, name)]
+    return _curve(arm, arm, "", driver, [], names, recordings)
+
+
+def driver_of(arm: Arm, name: str) -> str:
+    """Return what drives an effect on the hub: "speed", "angle" or "time"."""
+    effect = arm.known[name]
+    if effect.port("structure") is not None:
+        return "speed" if "viscous" in changes(arm, name) else "angle"
+    law = effect.port("friction") or effect.port("torque")
+    assert law is not None
+    wanted = law.__code__.co_varnames[: law.__code__.co_argcount]
+    return next((driver for driver in ("time", "angle") if driver in wanted), "speed")
+
+
+def _curve(
+    nominal: Arm,
+    corrected: Arm,
+    effect: str,
+    driver: str,
+    shown: Sequence[str],
+    rest: Sequence[str],
+    recordings: Sequence[Recording],
+) -> EffectCurve | None:
+    try:
+        motion = _moving(hub_torque(corrected, recordings))
+    except np.linalg.LinAlgError:  # no steady filter: the sensors do not see the hub
+        return None
+    if motion is None:
+        return None
+    own = motion.torque - law_torque(corrected, rest, motion.angle, motion.speed, motion.time)
+    against = bool(effect) and (driver == "speed" or corrected.known[effect].port("friction") is not None)
+    sign = (-1.0 if driver == "speed" else -np.sign(motion.speed)) if against else 1.0
+    x, y = getattr(motion, driver), sign * own
+    line = _line(x, driver)
+    at = {name: np.zeros(len(line)) for name in UNITS} | {"speed": np.ones(len(line))} | {driver: line}
+    before = [name for name in shown if name in nominal.effects and acts_on_hub(nominal, name)]
+    laws = [
+        (-1.0 if against else 1.0) * law_torque(arm, names, at["angle"], at["speed"], at["time"])
+        for arm, names in ((corrected, shown), (nominal, before))
+    ]
+    some = slice(None, None, max(len(x) // MOST_POINTS, 1))
+    words = "torque on the hub" if not against else "friction" if driver == "speed" else "friction added"
+    return EffectCurve(effect, driver, words, x[some], y[some], *_binned(x, y), line, *laws)
+
+
+def _moving(motions: Sequence[HubMotion]) -> HubMotion | None:
+    """Return the samples of all recordings at which the hub moves, one after another; None where they are too few."""
+    if not motions:
+        return None
+    fields = ("time", "angle", "speed", "torque")
+    joined = [np.concatenate([getattr(one, field) for one in motions]) for field in fields]
+    moves = np.abs(joined[2]) > MOVING * np.abs(joined[2]).max()
+    if moves.sum() < 2 * FEWEST_IN_BIN:
+        return None
+    return HubMotion("", *(values[moves] for values in joined))
+
+
+def _line(x: Floats, driver: str) -> Floats:
+    """Return where a law is drawn: on both sides of zero speed, not across it."""
+    if driver != "speed":
+        return np.linspace(x.min(), x.max(), LINE_POINTS)
+    slow = max(np.abs(x).min(), 1e-6)
+    half = LINE_POINTS // 2
+    return np.concatenate([-np.geomspace(max(-x.min(), 2 * slow), slow, half), np.geomspace(slow, max(x.max(), 2 * slow), half)])
+
+
+def _binned(x: Floats, y: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return centre, median and quartiles of bins that hold the same number of samples each."""
+    order = np.argsort(x)
+    parts = [part for part in np.array_split(order, min(BINS, max(len(x) // FEWEST_IN_BIN, 1))) if len(part)]
+    low, high = (np.array([np.percentile(y[part], q) for part in parts]) for q in QUARTILES)
+    return np.array([np.median(x[p]) for p in parts]), np.array([np.median(y[p]) for p in parts]), low, high

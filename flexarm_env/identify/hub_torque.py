@@ -1,0 +1,153 @@
+"""The torque on the hub that recordings ask for, without any law of friction: a smoother on the arm's linear part."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solve_discrete_are
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.data import Data, Run, prepare, torque_scale
+from flexarm_env.identify.load import loaded
+from flexarm_env.identify.recording import Recording
+from flexarm_env.linear import INPUTS, LinearArm
+
+Floats = NDArray[np.float64]
+
+#: Change of the torque from sample to sample that the smoother expects, over the rms of the drive's torque.
+RESTLESS = 0.05
+#: Noise on every state, over that of the torque, so that a state that no torque moves stays open to correction.
+LEAST_NOISE = 1e-6
+#: Seconds at both ends in which the smoother still remembers its start.
+SETTLING = 0.2
+#: What a hub effect of the structure port may edit.
+HUB_FIELDS = ("viscous", "hub_stiffness", "hub_torque")
+
+
+@dataclass(frozen=True)
+class HubMotion:
+    """One recording, smoothed.
+
+    Attributes:
+        name: of the recording.
+        time: (samples,) [s].
+        angle: (samples,) of the hub [rad].
+        speed: (samples,) of the hub [rad/s].
+        torque: (samples,) on the hub from all that is neither drive nor beam: friction, cables, cogging [Nm].
+    """
+
+    name: str
+    time: Floats
+    angle: Floats
+    speed: Floats
+    torque: Floats
+
+
+def hub_torque(arm: Arm, recordings: Sequence[Recording]) -> list[HubMotion]:
+    """Estimate the torque on the hub, sample by sample, with no assumption on its law but that it is a random walk.
+
+    A Kalman smoother (Rauch, Tung, Striebel, AIAA Journal 3 (1965) 1445) in its steady state, on the arm with a free hub
+    and a random torque on it. Where the hub sticks, the torque is what holds it.
+
+    Args:
+        arm: for its drive, inertias, beam and sensors; effects that act on the hub are left out.
+        recordings: of the machine, sampled evenly.
+
+    Raises:
+        InputError: for recordings that do not fit the arm.
+    """
+    reduced, data = prepare(bare(arm), recordings)
+    linear = {run.payload: loaded(reduced, run.payload).linearise("moving", data.interval) for run in data.runs}
+    plants = data.plants(reduced)
+    step = RESTLESS * torque_scale(reduced, data.runs)
+    gains = {payload: _gains(one, data.noise, step) for payload, one in linear.items()}
+    return [
+        _smoothed(linear[run.payload], *gains[run.payload], run, plants[run.payload].delayed(run.command), data)
+        for run in data.runs
+        if not len(run.intervals)
+    ]
+
+
+def bare(arm: Arm) -> Arm:
+    """Return the arm without the effects that act on the hub."""
+    return replace(arm, effects={name: values for name, values in arm.effects.items() if not acts_on_hub(arm, name)})
+
+
+def acts_on_hub(arm: Arm, name: str) -> bool:
+    """Whether all that an effect of the arm does is a torque on the hub."""
+    effect = arm.known[name]
+    if effect.port("structure") is not None:
+        changed = changes(arm, name)
+        return bool(changed) and changed <= set(HUB_FIELDS)
+    return effect.port("friction") is not None or effect.port("torque") is not None
+
+
+def changes(arm: Arm, name: str) -> set[str]:
+    """Return which of the arm's linear quantities an effect of it edits."""
+    with_it, without = vars(arm.structure()), vars(arm.without_effect(name).structure())
+    return {key for key, value in with_it.items() if value != without[key]}
+
+
+def law_torque(arm: Arm, names: Sequence[str], angle: Floats, speed: Floats, time: Floats) -> Floats:
+    """Return the torque [Nm] on a moving hub from effects of an arm at angles [rad], speeds [rad/s] and times [s].
+
+    Args:
+        arm: whose effects they are.
+        names: of effects that act on the hub.
+        angle: (points,).
+        speed: (points,), not zero.
+        time: (points,).
+    """
+    total = np.zeros(len(speed))
+    for name in names:
+        values, effect = arm.effects[name], arm.known[name]
+        if effect.port("structure") is not None:
+            own, other = vars(arm.structure()), vars(arm.without_effect(name).structure())
+            viscous, stiffness, constant = (own[key] - other[key] for key in HUB_FIELDS)
+            total += constant - viscous * speed - stiffness * angle
+        motion = {"angle": angle, "speed": speed, "time": time, "direction": np.sign(speed), "at_rest": np.False_}
+        for port, sign in (("friction", -np.sign(speed)), ("torque", 1.0)):
+            law = effect.port(port)
+            if law is not None:
+                wanted = law.__code__.co_varnames[: law.__code__.co_argcount]
+                total += sign * np.vectorize(law, otypes=[float])(*(values.get(key, motion.get(key)) for key in wanted))
+    return total
+
+
+def _gains(linear: LinearArm, noise: Floats, step: float) -> tuple[Floats, Floats, Floats]:
+    """Return the steady filter's transition (n + 1, n + 1), its gain and the smoother's, with the torque as last state."""
+    states = len(linear.states)
+    transition = np.eye(states + 1)
+    transition[:states, :states] = linear.transition
+    transition[:states, states] = linear.response[:, INPUTS.index("hub_torque")]
+    output = np.hstack([linear.output, np.zeros((len(linear.outputs), 1))])
+    push = np.append(linear.response[:, INPUTS.index("hub_torque")], 1.0)
+    process = step**2 * (np.outer(push, push) + LEAST_NOISE * np.diag(np.maximum(push**2, np.max(push[:states] ** 2))))
+    before = solve_discrete_are(transition.T, output.T, process, np.diag(noise**2))
+    gain = np.linalg.solve(output @ before @ output.T + np.diag(noise**2), output @ before).T
+    after = before - gain @ output @ before
+    return transition, gain, np.linalg.lstsq(before, transition @ after, rcond=1e-14)[0].T
+
+
+def _smoothed(
+    linear: LinearArm, transition: Floats, gain: Floats, back: Floats, run: Run, command: Floats, data: Data
+) -> HubMotion:
+    count, width = len(run.time), len(transition)
+    forcing = np.append(linear.response[:, INPUTS.index("command")], 0.0)
+    readings = run.measured - linear.offset
+    output = np.hstack([linear.output, np.zeros((len(linear.outputs), 1))])
+    ahead, filtered = np.zeros((count, width)), np.zeros((count, width))
+    ahead[0, [linear.states.index(body) for body in ("hub", "motor") if body in linear.states]] = run.start.angle
+    ahead[0, : run.start.moving + 1] = run.start.angle
+    for k in range(count):
+        filtered[k] = ahead[k] + gain @ (readings[k] - output @ ahead[k])
+        if k + 1 < count:
+            ahead[k + 1] = transition @ filtered[k] + forcing * command[k]
+    for k in range(count - 2, -1, -1):
+        filtered[k] += back @ (filtered[k + 1] - ahead[k + 1])
+    kept = slice(round(SETTLING / data.interval), count - round(SETTLING / data.interval))
+    hub, rate = linear.states.index("hub"), linear.states.index("hub_rate")
+    return HubMotion(run.name, run.time[kept], filtered[kept, hub], filtered[kept, rate], filtered[kept, -1])

@@ -1,0 +1,109 @@
+"""The falling error, the ranking of effects, and constants before and after."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import plotly.graph_objects as go
+
+from flexarm_env.identify.results import Candidate, Diagnosis, Estimate
+from flexarm_env.pictures import words
+from flexarm_env.pictures.plots import finished
+from flexarm_env.pictures.style import AFTER, AFTER_BAR, BEFORE_BAR, INK, QUIET_BAR
+
+NOISE_BAR = {"color": "white", "line": {"color": INK, "width": 1}, "pattern": {"shape": ".", "fgcolor": INK, "size": 5}}
+REMOVED_BAR = {
+    "color": "rgba(0,0,0,0)",
+    "line": {"color": "#888888", "width": 1},
+    "pattern": {"shape": "-", "fgcolor": "#cccccc", "size": 6},
+}
+RANKED = 8
+
+
+def waterfall(steps: Sequence[tuple[str, float]]) -> go.Figure:
+    """Return the error over the noise after each step, what the step removed, and the noise."""
+    names = [_broken(name) for name, _ in steps]
+    values = [value for _, value in steps]
+    looks = [BEFORE_BAR, *[QUIET_BAR] * (len(steps) - 2), AFTER_BAR] if len(steps) > 1 else [BEFORE_BAR]
+    figure = go.Figure()
+    for name, value, look in zip([*names, "noise floor"], [*values, 1.0], [*looks, NOISE_BAR], strict=True):
+        text = {"text": [f"<b>{words.number(value)}</b>"], "textposition": "outside", "cliponaxis": False}
+        figure.add_trace(go.Bar(x=[value], y=[name], orientation="h", marker=look, hoverinfo="x+y", **text))
+    for name, last, value in zip(names[1:], values, values[1:], strict=False):
+        start = value + 0.11 * max(values)  # beyond the number beside the bar
+        if last > start:
+            figure.add_trace(
+                go.Bar(x=[last - start], base=[start], y=[name], orientation="h", marker=REMOVED_BAR, hoverinfo="skip")
+            )
+    figure.add_vline(x=1.0, line={"color": INK, "width": 1.2, "dash": "dot"})
+    figure.update_yaxes(autorange="reversed", showgrid=False)
+    figure.update_xaxes(title_text="rms error / noise", range=[0.0, 1.16 * max([*values, 1.2])])
+    return finished(figure, 90 + 46 * (len(steps) + 1), barmode="overlay", bargap=0.3)
+
+
+def _broken(name: str) -> str:
+    return name.replace(" +", "<br>+").replace("constants refitted", "constants<br>refitted").replace("_", " ")
+
+
+def ranking(diagnosis: Diagnosis, count: int = RANKED) -> go.Figure:
+    """Return the share of the excess error that each effect removes, the accepted ones filled."""
+    found = diagnosis.ranking[:count]
+    same = {name for names in diagnosis.equivalent for name in names}
+    figure = go.Figure()
+    for one in found:
+        gain = 100.0 * one.gain
+        text = f"<b>{gain:.0f} %</b>" if one.accepted else f"{gain:.0f} %"
+        figure.add_trace(
+            go.Bar(
+                x=[gain],
+                y=[_label(one, same)],
+                orientation="h",
+                marker=AFTER_BAR if one.accepted else _equivalent_bar() if one.effect in same else QUIET_BAR,
+                text=[text],
+                textposition="outside" if gain < 85.0 else "inside",
+                cliponaxis=False,
+                hovertext=[words.parameters_of(one.estimates)],
+            )
+        )
+    figure.update_yaxes(autorange="reversed", showgrid=False)
+    figure.update_xaxes(title_text="excess error removed [%]", range=[0.0, 102.0])
+    return finished(figure, 90 + 30 * len(found), barmode="overlay", bargap=0.3)
+
+
+def _label(one: Candidate, same: set[str]) -> str:
+    name = one.effect.replace("_", " ")
+    return f"<b>✓ {name}</b>" if one.accepted else f"≈ {name}" if one.effect in same else name
+
+
+def _equivalent_bar() -> dict[str, Any]:
+    return {"color": "white", "line": {"color": AFTER, "width": 1}, "pattern": {"shape": "x", "fgcolor": AFTER, "size": 6}}
+
+
+def shifts(estimates: Sequence[Estimate]) -> go.Figure | None:
+    """Return how far each constant moved against the arm file [%], with its 90 % interval; None where none had a value."""
+    shown = [e for e in estimates if e.nominal and all(map(math.isfinite, (e.nominal, e.value, e.low, e.high)))]
+    if not shown:
+        return None
+
+    def percent(value: float, e: Estimate) -> float:
+        return round(100.0 * (value - e.nominal) / abs(e.nominal), 3)
+
+    value = [percent(e.value, e) for e in shown]
+    above = [max(percent(e.high, e) - v, 0.0) for e, v in zip(shown, value, strict=True)]
+    below = [max(v - percent(e.low, e), 0.0) for e, v in zip(shown, value, strict=True)]
+    moved = [not e.low <= e.nominal <= e.high for e in shown]
+    figure = go.Figure(
+        go.Scatter(
+            x=value,
+            y=[words.constant_name(e).replace("_", " ") for e in shown],
+            mode="markers",
+            marker={"size": 9, "color": AFTER, "symbol": ["circle" if m else "circle-open" for m in moved]},
+            error_x={"type": "data", "array": above, "arrayminus": below, "color": INK, "thickness": 1.4, "width": 4},
+        )
+    )
+    figure.add_vline(x=0.0, line={"color": INK, "width": 1.2, "dash": "dot"})
+    figure.update_yaxes(autorange="reversed")
+    figure.update_xaxes(title_text="change against the arm file [%]")
+    return finished(figure, 90 + 26 * len(shown))

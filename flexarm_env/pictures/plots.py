@@ -1,0 +1,67 @@
+"""What all figures of a page share: their look, and lines as small as the noise allows."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+from numpy.typing import NDArray
+
+from flexarm_env.pictures.style import GRID, INK
+
+Floats = NDArray[np.float64]
+
+#: Curves are drawn in steps of the noise over this: what is finer is no information, and takes half the page.
+STEPS_PER_NOISE = 50.0
+#: Beyond so many samples a curve is drawn by the graphics card.
+MANY = 20_000
+
+
+def finished(figure: go.Figure, height: int, hover: str = "closest", **layout: Any) -> go.Figure:
+    """Return a figure in the page's look, of a height [px]."""
+    top = layout.pop("top", 26)
+    figure.update_layout(
+        template="plotly_white",
+        font={"color": INK, "size": 12},
+        hovermode=hover,
+        height=height,
+        margin={"l": 8, "r": 8, "t": top, "b": 8},
+        **{"showlegend": False, **layout},
+    )
+    axes = {"automargin": True, "gridcolor": GRID, "zerolinecolor": "#bbbbbb", "title_standoff": 6}
+    figure.update_xaxes(**axes)
+    figure.update_yaxes(**axes)
+    return figure
+
+
+def legend(y: float = 1.0) -> dict[str, Any]:
+    """Return the layout of a legend that lies over the axes."""
+    return {
+        "showlegend": True,
+        "legend": {"orientation": "h", "x": 0, "y": y, "yanchor": "bottom", "itemwidth": 30, "itemsizing": "constant"},
+    }
+
+
+def in_steps(values: Floats, step: float) -> list[float]:
+    """Return values to the last decimal that a step needs; a list, since Plotly packs arrays into text that is longer."""
+    finite = np.where(np.isfinite(values), values, np.nan)
+    rounded: list[float] = np.round(finite, max(-math.floor(math.log10(step)), 0)).tolist()
+    return rounded
+
+
+def digits(values: Floats, count: int = 4) -> list[float]:
+    """Return values to so many digits of the largest."""
+    largest = float(np.nanmax(np.abs(values), initial=1e-300, where=np.isfinite(values)))
+    return in_steps(np.asarray(values, dtype=float), largest * 10.0**-count)
+
+
+def curve(time: Floats, values: Floats, step: float, **look: Any) -> Any:
+    """Return a line over time [s], its values to within a step."""
+    # The page's size: even times follow from the first two.
+    steps = np.diff(time)
+    even = np.allclose(steps, steps[0], rtol=1e-6)
+    x = {"x0": float(time[0]), "dx": round(float(time[-1] - time[0]) / len(steps), 9)} if even else {"x": digits(time, 7)}
+    trace: Any = go.Scattergl if len(time) > MANY else go.Scatter
+    return trace(y=in_steps(values, step), mode="lines", **x, **look)

@@ -1,0 +1,152 @@
+"""What is left between measurement and model, against what might drive it, and by frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+from plotly.subplots import make_subplots
+from scipy.signal import welch
+
+from flexarm_env.identify.recording import Recording
+from flexarm_env.identify.results import Comparison, Replay
+from flexarm_env.pictures.overlays import AS_GIVEN, CORRECTED, band
+from flexarm_env.pictures.plots import Floats, digits, finished, in_steps, legend
+from flexarm_env.pictures.style import AFTER_LINE, BEFORE_LINE, INK, REGIMES
+
+POINTS = 1300  # of a scatter
+BINS = 24
+#: Speed from the angle is taken over this [s], so that it is more than noise.
+SPEED_TIME = 0.04
+#: A replay that ran away counts as so many times the noise.
+LARGEST = 1e6
+SEGMENT = 1024  # samples, of Welch's method
+
+
+@dataclass(frozen=True)
+class Driver:
+    """Something that may drive an error: what it is called, and its values, recording after recording (samples,)."""
+
+    name: str
+    unit: str
+    values: Floats
+
+    @property
+    def title(self) -> str:
+        """Name and unit."""
+        return f"{self.name} [{self.unit}]"
+
+
+def drivers(comparison: Comparison, recordings: Sequence[Recording]) -> list[Driver]:
+    """Return time, angle, speed and command of all recordings, those that were measured."""
+    replays = comparison.replays
+    ends = np.cumsum([0.0, *(one.time[-1] for one in replays)])
+    found = [
+        Driver(
+            "time, one recording after another", "s", np.concatenate([r.time + e for r, e in zip(replays, ends, strict=False)])
+        )
+    ]
+    if "arm_angle" in comparison.noise:
+        found.append(Driver("arm angle", "rad", np.concatenate([one.measured["arm_angle"] for one in replays])))
+    speeds = [_speed(one, comparison) for one in replays]
+    if all(speed is not None for speed in speeds):
+        found.append(Driver("arm speed", "rad/s", np.concatenate(speeds)))  # type: ignore[arg-type]
+    unit = "A" if comparison.arm.input == "current" else "V"
+    found.append(Driver(comparison.arm.input, unit, np.concatenate([one.command for one in recordings])))
+    return found
+
+
+def _speed(one: Replay, comparison: Comparison) -> Floats | None:
+    """Return the arm's speed [rad/s] as measured."""
+    if "motor_speed" in one.measured:
+        gain = comparison.arm.sensors["motor_speed"]["gain"] or 1.0
+        return np.asarray(one.measured["motor_speed"] / gain / comparison.arm.constants["drive"]["gear_ratio"])
+    if "arm_angle" not in one.measured:
+        return None
+    width = max(int(SPEED_TIME / float(np.median(np.diff(one.time)))), 1)
+    return np.gradient(
+        np.convolve(np.pad(one.measured["arm_angle"], width, "edge"), np.ones(2 * width + 1) / (2 * width + 1), "valid"), one.time
+    )
+
+
+def against(driver: Driver, before: Comparison, after: Comparison | None, signal: str) -> go.Figure:
+    """Return a signal's residual over its noise against a driver, by regime: as given above, corrected below."""
+    models = [(AS_GIVEN, before), *([(CORRECTED, after)] if after is not None else [])]
+    figure = make_subplots(
+        len(models), 1, shared_xaxes=True, shared_yaxes="all", vertical_spacing=0.11, subplot_titles=[m for m, _ in models]
+    )
+    figure.update_annotations(x=0, xanchor="left", font_size=13)
+    regime = np.concatenate([one.regime for one in before.replays])
+    for row, (_, comparison) in enumerate(models, start=1):
+        off = residual(comparison, signal)
+        some = np.flatnonzero(np.isfinite(off))[:: max(len(off) // POINTS, 1)]
+        for code, (name, colour, symbol) in enumerate(REGIMES):
+            chosen = some[regime[some] == code]
+            marker = {"color": colour, "symbol": symbol, "size": 5, "opacity": 0.75}
+            look: dict[str, Any] = {
+                "name": name,
+                "legendgroup": name,
+                "mode": "markers",
+                "marker": marker,
+                "showlegend": row == 1,
+            }
+            figure.add_trace(go.Scatter(x=digits(driver.values[chosen]), y=in_steps(off[chosen], 0.1), **look), row, 1)
+        if driver.unit != "s":
+            x, middle = _medians(driver.values, off)
+            line = {"color": INK, "width": 2.5}
+            figure.add_trace(
+                go.Scatter(x=digits(x), y=in_steps(middle, 0.01), mode="lines", line=line, name="median", showlegend=row == 1),
+                row,
+                1,
+            )
+        band(figure, row)
+    figure.update_xaxes(title_text=driver.title, row=len(models))
+    figure.update_yaxes(title_text="residual [σ]")
+    return finished(figure, 200 + 130 * len(models), top=52, **legend(1.08))
+
+
+def residual(comparison: Comparison, signal: str) -> Floats:
+    """Return a signal's error over its noise (samples,), in windows of 1 s, recording after recording."""
+    return np.concatenate([(r.measured[signal] - r.windows[signal]) / comparison.noise[signal] for r in comparison.replays])
+
+
+def _medians(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    edges = np.linspace(np.percentile(x, 0.5), np.percentile(x, 99.5), BINS + 1)
+    place = np.digitize(x, edges)
+    full = [k for k in range(1, BINS + 1) if (place == k).sum() >= 5]
+    return np.array([0.5 * (edges[k - 1] + edges[k]) for k in full]), np.array([np.nanmedian(y[place == k]) for k in full])
+
+
+def spectrum(before: Comparison, after: Comparison | None, signal: str) -> go.Figure:
+    """Return the residual by frequency, so scaled that white noise of the sensor's size is 1 throughout."""
+    figure = go.Figure()
+    for name, line, comparison in ((AS_GIVEN, BEFORE_LINE, before), (CORRECTED, AFTER_LINE, after)):
+        if comparison is not None:
+            frequency, size = amplitude(comparison, signal)
+            figure.add_trace(go.Scatter(x=digits(frequency), y=digits(size), mode="lines", name=name, line=line))
+    ends = digits(frequency[[0, -1]])
+    figure.add_trace(
+        go.Scatter(x=ends, y=[1.0, 1.0], mode="lines", name="noise", line={"color": INK, "width": 1.2, "dash": "dot"})
+    )
+    figure.update_xaxes(title_text="frequency [Hz]", type="log")
+    figure.update_yaxes(title_text="residual / noise", type="log")
+    return finished(figure, 330, "x unified", **legend())
+
+
+def amplitude(comparison: Comparison, signal: str) -> tuple[Floats, Floats]:
+    """Return frequencies [Hz] and the residual's amplitude over that of white noise of the sensor's size."""
+    powers, weights = [], []
+    shortest = min(len(one.time) for one in comparison.replays)
+    frequency = np.zeros(0)
+    for one in comparison.replays:
+        rate = 1.0 / float(np.median(np.diff(one.time)))
+        off = (one.measured[signal] - one.windows[signal]) / comparison.noise[signal]
+        off = np.clip(np.nan_to_num(off), -LARGEST, LARGEST)
+        frequency, power = welch(off, rate, nperseg=min(SEGMENT, shortest), detrend=False)
+        powers.append(power * rate / 2.0)
+        weights.append(len(off))
+    whole = np.average(powers, axis=0, weights=weights)
+    return frequency[1:-1], np.sqrt(whole[1:-1])  # both ends are scaled otherwise
