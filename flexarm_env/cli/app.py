@@ -209,6 +209,27 @@ def thesis(
     reproduce(output, json)
 
 
+@app.command()
+def lab(
+    recordings: Annotated[
+        list[Path] | None, typer.Argument(metavar="[RECORDING…]", help="CSV files, or folders of them.", show_default=False)
+    ] = None,
+    arm: ArmName = "thesis-fem",
+    columns: Columns = None,
+    effects: Effects = None,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="To listen at on this machine; 0 takes any.")] = 8071,
+    show: Annotated[bool, typer.Option("--show/--no-show", help="Open a browser.")] = True,
+) -> None:
+    """Do the same in a browser: drop recordings in, play with effects, diagnose, add. Serves this machine only."""
+    from flexarm_env.cli import outputs
+
+    outputs.need_lab()
+    model, runs = _load(recordings, arm, columns, effects) if recordings else (_arm(arm, effects), [])
+    from flexarm_env.lab.server import serve
+
+    serve(model, runs, columns, port, show)
+
+
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
 def bench(context: typer.Context) -> None:
     """Measure speed and accuracy (in a source tree)."""

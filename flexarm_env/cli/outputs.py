@@ -44,6 +44,13 @@ def need_plots() -> None:
         raise InputError(f"pictures need {' and '.join(missing)}; pip install 'flexarm-env[plots]'")
 
 
+def need_lab() -> None:
+    """Refuse the lab where its libraries are missing."""
+    missing = [name for name in ("nicegui", "plotly") if importlib.util.find_spec(name) is None]
+    if missing:
+        raise InputError(f"the lab needs {' and '.join(missing)}; pip install 'flexarm-env[lab]'")
+
+
 def write_json(path: Path | None, content: Mapping[str, Any]) -> None:
     """Write a result as JSON to a file, or to stdout for "-"; numbers that are none become null."""
     if path is None:

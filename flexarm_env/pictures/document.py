@@ -6,6 +6,7 @@ Plotly's library alone has 4.8 MB as text, so it and the figures lie in the page
 from __future__ import annotations
 
 import base64
+import functools
 import gzip
 from collections.abc import Sequence
 from html import escape
@@ -101,9 +102,14 @@ def document(title: str, parts: Sequence[str]) -> str:
         f"</head>\n<body><main><h1>{escape(title)}</h1>\n"
         + "\n".join(parts)
         + f"\n</main><footer>FlexArm {__version__}</footer>\n"
-        + _packed(plotly.offline.get_plotlyjs(), ' id="plotly"')
+        + _library()
         + f"\n<script>{_UNPACK}</script></body></html>\n"
     )
+
+
+@functools.cache
+def _library() -> str:
+    return _packed(plotly.offline.get_plotlyjs(), ' id="plotly"')
 
 
 def figure(drawn: go.Figure, name: str, heading: str = "", caption: str = "") -> str:

@@ -13,8 +13,8 @@ import pytest
 
 pytest.importorskip("plotly")
 
-from plotly.offline import get_plotlyjs
 from picture_results import SIGNALS, comparison, diagnosis, recordings
+from plotly.offline import get_plotlyjs
 
 from flexarm_env.pictures.page import Findings, page
 

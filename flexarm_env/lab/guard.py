@@ -1,0 +1,59 @@
+"""What the server refuses before it reads: other hosts' names, other sites' pages, and bodies that are too large."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable, MutableMapping
+from typing import Any
+
+Scope = MutableMapping[str, Any]
+Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
+Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
+App = Callable[[Scope, Receive, Send], Awaitable[None]]
+
+#: Largest body of a request [bytes]: some recordings at once.
+LARGEST_BODY = 64 * 2**20
+
+
+class Guard:
+    """ASGI middleware. A page elsewhere could otherwise reach the lab through the visitor's own browser.
+
+    A name that resolves to this machine (DNS rebinding) shows in the Host header, a request from another site's page in
+    Origin.
+
+    Args:
+        app: what is guarded.
+        hosts: "name:port" under which the lab is served.
+        largest: size of a body [bytes].
+    """
+
+    def __init__(self, app: App, hosts: tuple[str, ...], largest: int = LARGEST_BODY) -> None:
+        self.app, self.hosts, self.largest = app, hosts, largest
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request, or refuse it."""
+        if scope["type"] not in ("http", "websocket"):
+            return await self.app(scope, receive, send)
+        headers = {key.decode("latin-1").lower(): value.decode("latin-1") for key, value in scope["headers"]}
+        refused = self._refusal(scope, headers)
+        if refused is None:
+            return await self.app(scope, receive, send)
+        if scope["type"] == "websocket":
+            return await send({"type": "websocket.close", "code": 1008, "reason": refused[1]})
+        status, words = refused
+        plain = [(b"content-type", b"text/plain; charset=utf-8"), (b"connection", b"close")]
+        await send({"type": "http.response.start", "status": status, "headers": plain})
+        await send({"type": "http.response.body", "body": words.encode()})
+
+    def _refusal(self, scope: Scope, headers: dict[str, str]) -> tuple[int, str] | None:
+        if headers.get("host", "") not in self.hosts:
+            return 421, f"The lab answers only at {self.hosts[0]}."
+        origin = headers.get("origin")
+        if origin is not None and origin.partition("://")[2] not in self.hosts:
+            return 403, "The lab answers only its own page."
+        if scope["type"] == "http" and scope["method"] not in ("GET", "HEAD"):
+            length = headers.get("content-length", "")
+            if not length.isdigit():
+                return 411, "The lab takes no body without its length."
+            if int(length) > self.largest:
+                return 413, f"The lab takes at most {self.largest // 2**20} MB at once; cut the recordings or drop fewer."
+        return None

@@ -1,0 +1,63 @@
+"""The lab's overlay: measured, as given and now, thin enough to follow a finger."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+from numpy.typing import NDArray
+from plotly.subplots import make_subplots
+
+from flexarm_env.identify.data import Run
+from flexarm_env.pictures import words
+from flexarm_env.pictures.overlays import title
+from flexarm_env.pictures.plots import digits, finished, legend
+from flexarm_env.pictures.style import AFTER_LINE, BEFORE_LINE, MEASURED_LINE
+
+Floats = NDArray[np.float64]
+
+POINTS = 1500  # of a curve
+HEIGHT = 128  # [px] of each signal
+
+
+def thinned(values: Floats) -> list[float]:
+    """Return at most about so many values as are drawn, to four digits."""
+    return digits(values[:: max(len(values) // POINTS, 1)])
+
+
+def overlay(run: Run, signals: list[str], given: Floats, now: Floats) -> go.Figure:
+    """Return each signal of a recording: measured, the model as given, and the model as it is now.
+
+    Args:
+        run: the recording.
+        signals: names of its columns.
+        given: (samples, signals), the free replay of the arm as given.
+        now: the same of the arm as it is now.
+    """
+    order = words.signals_of(signals)
+    figure = make_subplots(
+        len(order), 1, shared_xaxes=True, vertical_spacing=0.3 / (len(order) + 1), subplot_titles=[title(s) for s in order]
+    )
+    figure.update_annotations(x=0, xanchor="left", font_size=13)
+    x = thinned(run.time)
+    for row, signal in enumerate(order, start=1):
+        column = signals.index(signal)
+        for values, line, name in (
+            (run.measured, MEASURED_LINE, "measured"),
+            (given, BEFORE_LINE, "as given"),
+            (now, AFTER_LINE, "now"),
+        ):
+            look: dict[str, Any] = {"name": name, "legendgroup": name, "showlegend": row == 1, "line": line}
+            figure.add_trace(go.Scatter(x=x, y=thinned(values[:, column]), mode="lines", **look), row, 1)
+    figure.update_xaxes(title_text="time [s]", row=len(order))
+    figure.update_layout(uirevision=run.name)  # a zoom outlives a drag
+    return finished(figure, 90 + HEIGHT * len(order), "x unified", top=58, **legend(1.0 + 24.0 / (HEIGHT * len(order))))
+
+
+def moved(signals: list[str], now: Floats) -> tuple[Mapping[str, Any], list[int]]:
+    """Return what Plotly's restyle needs to move the curves of the model as it is now."""
+    order = words.signals_of(signals)
+    ys = [thinned(now[:, signals.index(signal)]) for signal in order]
+    return {"y": ys}, [3 * i + 2 for i in range(len(order))]

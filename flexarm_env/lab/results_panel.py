@@ -1,0 +1,136 @@
+"""The verdict, the ranking with its buttons, the falling error, and what can be taken home."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from nicegui import html, ui
+
+from flexarm_env.errors import InputError
+from flexarm_env.identify.results import Candidate
+from flexarm_env.lab.session import Session
+from flexarm_env.pictures import bars, words
+
+RANKED = 7
+
+
+class ResultsPanel:
+    """What the steps so far have brought: the verdict above the overlay, the rest below it.
+
+    Args:
+        session: whose results they are.
+        complain: called with one line where something is refused.
+        added: called when an effect has been added.
+    """
+
+    def __init__(self, session: Session, complain: Callable[[str], None], added: Callable[[], None]) -> None:
+        self.session, self.complain, self.added = session, complain, added
+        self.buttons: list[ui.button] = []
+        with html.div().classes("card") as self.verdict_card:
+            self.verdict = ui.label().classes("verdict").props("role=status")
+            self.taker = ui.button("Add", on_click=self._adopt).classes("q-mt-sm")
+
+    def place_below(self) -> None:
+        """Build what stands below the overlay."""
+        with html.div().classes("results") as self.below:
+            with html.div().classes("card"):
+                html.h2("How the held-out error fell")
+                self.fall = html.div()
+            with html.div().classes("card") as self.ranking_card:
+                html.h2("Which effect")
+                self.ranking = html.div()
+            with html.div().classes("card"):
+                html.h2("Take home")
+                with html.div().classes("row"):
+                    ui.button("Arm file", on_click=self._arm_file).props("outline")
+                    self.report = ui.button("Report", on_click=self._report).props("outline")
+                    self.next_run = ui.button("Next run", on_click=self._next_run).props("outline")
+                self.why = ui.label().classes("muted")
+
+    def refresh(self, held_out: float | None) -> None:
+        """Show the session's results.
+
+        Args:
+            held_out: error of the arm as it is now, where it has been worked out.
+        """
+        found = self.session.diagnosis
+        self.verdict_card.set_visibility(found is not None)
+        self.ranking_card.set_visibility(found is not None and bool(found.ranking))
+        self.below.set_visibility(bool(self.session.recordings))
+        if found is not None:
+            self.verdict.set_text(words.verdict(found))
+            names = " and ".join(name.replace("_", " ") for name in found.effects)
+            self.taker.set_text(f"Add {names}" if names else "Take the refitted constants")
+        self.taker.set_visibility(self.session.can_adopt)
+        self._rank()
+        steps = list(self.session.steps)
+        if held_out is not None and self.session.draft != self.session.arm:
+            steps.append(("by hand", held_out))
+        self.fall.clear()
+        if steps:
+            with self.fall:
+                ui.plotly(bars.waterfall(steps)).classes("plot")
+        proposal = getattr(found, "next_run", None)
+        self.next_run.set_visibility(bool(proposal))
+        self.why.set_text(str(proposal["why"]) if proposal else "")
+
+    def enable(self, free: bool) -> None:
+        """Let the buttons that begin work be pressed, or not."""
+        for button in [*self.buttons, self.taker, self.report]:
+            button.set_enabled(free)
+
+    def _rank(self) -> None:
+        self.ranking.clear()
+        self.buttons = []
+        found = self.session.diagnosis
+        if found is None:
+            return
+        same = {name for names in found.equivalent for name in names}
+        with self.ranking:
+            for one in found.ranking[:RANKED]:
+                self._row(one, one.effect in same and not one.accepted)
+        self.enable(not self.session.busy)
+
+    def _row(self, one: Candidate, same: bool) -> None:
+        with html.div().classes(f"ranked{' accepted' if one.accepted else ''}"):
+            mark = "✓ " if one.accepted else "≈ " if same else ""
+            ui.label(mark + one.effect.replace("_", " ")).classes("effect-name")
+            ui.label(f"{100.0 * one.gain:.0f} %").classes("gain")
+            if one.effect in self.session.arm.effects:
+                ui.label("added").classes("muted")
+            else:
+                button = ui.button("Add", on_click=lambda: self._add(one.effect)).props("dense outline padding='0 .7rem'")
+                button.props(f'aria-label="Add {one.effect}"')
+                self.buttons.append(button)
+            with html.div().classes("bar"):
+                html.div().style(f"width: {100.0 * one.gain:.1f}%")
+            if one.estimates:
+                ui.label(words.parameters_of(one.estimates)).classes("parameters")
+
+    def _add(self, effect: str) -> None:
+        self.complain("")
+        try:
+            self.session.add(effect)
+        except InputError as error:
+            self.complain(str(error))
+        self.added()
+
+    def _adopt(self) -> None:
+        self.session.adopt()
+        self.added()
+
+    def _arm_file(self) -> None:
+        ui.download.content(self.session.arm_file(), f"{self.session.draft.name}.toml", "application/toml")
+
+    def _report(self) -> None:
+        self.complain("")
+        try:
+            self.session.write_report()
+        except InputError as error:
+            self.complain(str(error))
+        self.enable(False)
+
+    def _next_run(self) -> None:
+        content = self.session.next_run()
+        if content is not None:
+            ui.download.content(content, "next-run.csv", "text/csv")

@@ -1,0 +1,84 @@
+"""Serve the lab on this machine, to this machine."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+from collections import OrderedDict
+from collections.abc import Sequence
+from pathlib import Path
+
+from nicegui import app, core, ui
+from starlette.middleware import Middleware
+
+from flexarm_env.arm import Arm
+from flexarm_env.errors import InputError
+from flexarm_env.identify.recording import Recording
+from flexarm_env.lab.guard import Guard
+from flexarm_env.lab.page import LabPage
+from flexarm_env.lab.session import Session
+
+HOST = "127.0.0.1"
+#: Tabs whose state is kept; the one that was opened first goes first.
+MOST_SESSIONS = 16
+DEMO = Path(__file__).resolve().parent.parent / "demo"
+
+
+def serve(arm: Arm, recordings: Sequence[Recording], columns: Path | None, port: int, show: bool) -> None:
+    """Serve the lab until Ctrl-C.
+
+    Args:
+        arm: with which every tab starts.
+        recordings: with which every tab starts.
+        columns: a column map for uploads.
+        port: to listen at; 0 takes any that is free.
+        show: whether to open a browser.
+
+    Raises:
+        InputError: if the port is taken.
+    """
+    port = _free(port)
+    sessions: OrderedDict[str, Session] = OrderedDict()
+
+    @ui.page("/", title="FlexArm lab")
+    async def lab() -> None:
+        await ui.context.client.connected()
+        tab = ui.context.client.tab_id or ui.context.client.id
+        if tab not in sessions:
+            sessions[tab] = _started(arm, recordings, columns)
+            if len(sessions) > MOST_SESSIONS:
+                sessions.popitem(last=False)[1].stop()
+        LabPage(sessions[tab], lambda: Recording.read_all(DEMO))
+
+    @app.on_shutdown
+    def end() -> None:
+        for session in sessions.values():
+            session.stop()
+
+    hosts = (f"{HOST}:{port}", f"localhost:{port}")
+    core.app.user_middleware.insert(0, Middleware(Guard, hosts=hosts))
+    print(f"FlexArm lab at http://{HOST}:{port}/ (Ctrl-C ends it)", flush=True)
+    with contextlib.suppress(KeyboardInterrupt):
+        ui.run(host=HOST, port=port, title="FlexArm lab", reload=False, show=show, show_welcome_message=False, language="en-US")
+
+
+def _started(arm: Arm, recordings: Sequence[Recording], columns: Path | None) -> Session:
+    session = Session(arm, columns)
+    if recordings:
+        session.use(list(recordings))
+    return session
+
+
+def _free(port: int) -> int:
+    """Return the port, or a free one for 0.
+
+    Raises:
+        InputError: if it is taken.
+    """
+    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((HOST, port))
+        except OSError as error:
+            raise InputError(f"port {port} cannot be used: {error.strerror}; name another with --port, 0 for any") from None
+        return int(probe.getsockname()[1])

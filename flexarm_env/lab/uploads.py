@@ -1,0 +1,56 @@
+"""Recordings that a browser sends: bounded, and read as those on disk are."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path, PurePosixPath, PureWindowsPath
+
+from flexarm_env.arm import Arm
+from flexarm_env.cli.inputs import read_recordings
+from flexarm_env.errors import InputError
+from flexarm_env.identify.recording import Recording
+from flexarm_env.lab.guard import LARGEST_BODY
+
+MOST_RECORDINGS = 12
+#: Samples of all recordings together: beyond it nothing is live any more.
+MOST_SAMPLES = 2_000_000
+
+
+def read_upload(arm: Arm, name: str, content: bytes, columns: Path | None, present: list[Recording]) -> Recording:
+    """Return the recording in an uploaded file.
+
+    Args:
+        arm: that it is of.
+        name: of the file, as the browser says.
+        content: of the file.
+        columns: a column map, if one was named on the command line.
+        present: recordings that are there already.
+
+    Raises:
+        InputError: one line that names the file, row and column.
+    """
+    file = plain_name(name)
+    if len(present) >= MOST_RECORDINGS:
+        raise InputError(f"{file}: {MOST_RECORDINGS} recordings are here already; remove one first")
+    if len(content) > LARGEST_BODY:
+        raise InputError(f"{file}: is larger than {LARGEST_BODY // 2**20} MB; cut it into shorter recordings")
+    with tempfile.TemporaryDirectory(prefix="flexarm-lab-") as folder:
+        path = Path(folder) / file
+        path.write_bytes(content)
+        try:
+            (found,) = read_recordings(arm, [path], columns)
+        except InputError as error:
+            raise InputError(str(error).replace(f"{folder}/", "").replace(str(Path(folder) / ""), "")) from None
+    object.__setattr__(found, "source", file)
+    if any(found.name == one.name for one in present):
+        raise InputError(f"{file}: a recording '{found.name}' is here already; remove it or rename the file")
+    if sum(map(len, present)) + len(found) > MOST_SAMPLES:
+        raise InputError(f"{file}: makes more than {MOST_SAMPLES} samples in all; cut the recordings shorter")
+    return found
+
+
+def plain_name(name: str) -> str:
+    """Return a file's name without folders and without what no file should be called."""
+    last = PureWindowsPath(PurePosixPath(name).name).name
+    text = "".join(c if c.isalnum() or c in "-_. ()" else "_" for c in last).strip(". ")[-80:]
+    return text or "recording.csv"
