@@ -32,7 +32,8 @@ class EffectsPanel:
         """Show the effects of the session's draft."""
         self.rows.clear()
         with self.rows:
-            for name, effect in self.session.base.known.items():
+            on = self.session.draft.effects
+            for name, effect in sorted(self.session.base.known.items(), key=lambda item: item[0] not in on):
                 if self.session.base.can_have(name) and effect.fitted:
                     self._row(name, effect)
 

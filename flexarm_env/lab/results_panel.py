@@ -8,6 +8,7 @@ from nicegui import html, ui
 
 from flexarm_env.errors import InputError
 from flexarm_env.identify.results import Candidate
+from flexarm_env.lab.chart import Chart
 from flexarm_env.lab.session import Session
 from flexarm_env.pictures import bars, words
 
@@ -35,7 +36,7 @@ class ResultsPanel:
         with html.div().classes("results") as self.below:
             with html.div().classes("card"):
                 html.h2("How the held-out error fell")
-                self.fall = html.div()
+                self.fall = Chart()
             with html.div().classes("card") as self.ranking_card:
                 html.h2("Which effect")
                 self.ranking = html.div()
@@ -66,10 +67,10 @@ class ResultsPanel:
         steps = list(self.session.steps)
         if held_out is not None and self.session.draft != self.session.arm:
             steps.append(("by hand", held_out))
-        self.fall.clear()
         if steps:
-            with self.fall:
-                ui.plotly(bars.waterfall(steps)).classes("plot")
+            self.fall.show(bars.waterfall(steps))
+        else:
+            self.fall.clear()
         proposal = getattr(found, "next_run", None)
         self.next_run.set_visibility(bool(proposal))
         self.why.set_text(str(proposal["why"]) if proposal else "")
@@ -128,7 +129,7 @@ class ResultsPanel:
             self.session.write_report()
         except InputError as error:
             self.complain(str(error))
-        self.enable(False)
+        self.added()
 
     def _next_run(self) -> None:
         content = self.session.next_run()

@@ -39,6 +39,7 @@ class Session:
         diagnosis: the last one; of the arm before what it found was added.
         job: the work under way, or what ended last.
         added: whether what the last diagnosis found has been added.
+        news: how often the work under way has said something; pages that show the session compare it.
     """
 
     base: Arm
@@ -49,6 +50,7 @@ class Session:
     diagnosis: Diagnosis | None = None
     job: Job | None = None
     added: bool = False
+    news: int = 0
 
     def __post_init__(self) -> None:
         self.arm = self.draft = self.base
@@ -187,11 +189,14 @@ class Session:
 
         self._begin("Writing the report", work)
 
-    def finish(self) -> Any:
-        """Take in what the work that just ended found; return it, None if it failed."""
-        if self.job is None or self.job.state != DONE:
-            return None
-        result = self.job.result
+    def poll(self) -> None:
+        """Take in what the work under way has said, and what it found once it has ended."""
+        if self.job is not None and self.job.poll():
+            self.news += 1
+            if self.job.state == DONE:
+                self._finish(self.job.result)
+
+    def _finish(self, result: Any) -> None:
         if isinstance(result, Diagnosis):
             self.diagnosis, self.added = result, False
         elif isinstance(result, Addition):
@@ -200,7 +205,6 @@ class Session:
             self._step(f"+ {result.effect}", result.error["final"])
             self.arm = self.draft = result.arm
             self.added = True
-        return result
 
     def stop(self) -> None:
         """Stop the work under way."""

@@ -23,7 +23,7 @@ h2 { font-size: 1rem; font-weight: 600; line-height: 1.4; margin: 0 0 .5rem; let
   background: #fff3ec; border: 2px solid #b34700; border-radius: 8px;
   padding: .6rem .9rem; margin-bottom: 1rem; overflow-wrap: anywhere; }
 .complaint::before { content: "⚠ "; }
-.tiles { display: flex; flex-wrap: wrap; gap: .5rem 2rem; }
+.tiles { display: flex; flex-wrap: wrap; gap: .3rem 2rem; align-items: end; margin-bottom: .5rem; }
 .tile .number { font-size: 1.7rem; font-weight: 600; line-height: 1.2; font-variant-numeric: tabular-nums; }
 .tile .what { font-size: .85rem; color: #555; }
 .results { display: grid; gap: 1rem; grid-template-columns: repeat(auto-fit, minmax(min(380px, 100%), 1fr)); }
@@ -50,6 +50,7 @@ h2 { font-size: 1rem; font-weight: 600; line-height: 1.4; margin: 0 0 .5rem; let
 .drop.over { background: #e3f0f8; border-color: #005a8c; } .drop:focus-within { outline: 3px solid #0072b2; }
 .drop input { position: absolute; opacity: 0; width: 1px; height: 1px; }
 .q-btn { text-transform: none; }
+.empty { font-size: 1.1rem; line-height: 1.9; margin: .5rem 0; padding-left: 1.4rem; }
 .plot { width: 100%; }
 @media (max-width: 900px) {
   .lab { padding: .6rem .7rem 2rem; }

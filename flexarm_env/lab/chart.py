@@ -1,0 +1,34 @@
+"""A Plotly figure in the page that comes and goes without a hidden one, which Plotly would fail to resize."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import plotly.graph_objects as go
+from nicegui import html, ui
+
+
+class Chart:
+    """A place for one figure."""
+
+    def __init__(self) -> None:
+        self._place = html.div()
+        self._plot: Any = None
+
+    def show(self, figure: go.Figure) -> None:
+        """Draw a figure, in place of the last."""
+        if self._plot is None:
+            with self._place:
+                self._plot = ui.plotly(figure).classes("plot")
+        else:
+            self._plot.update_figure(figure)
+
+    def restyle(self, *changes: Any) -> None:
+        """Change some traces, with the arguments of Plotly's restyle."""
+        if self._plot is not None:
+            self._plot.run_plot_method("restyle", *changes)
+
+    def clear(self) -> None:
+        """Take the figure away."""
+        self._place.clear()
+        self._plot = None

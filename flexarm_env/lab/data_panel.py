@@ -1,0 +1,129 @@
+"""Recordings: dropped in, listed, taken out again; and the arm that they are held against."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import AsyncIterator, Callable
+
+from nicegui import events, html, run, ui
+
+from flexarm_env.arm import Arm
+from flexarm_env.arm_file import shipped_arms
+from flexarm_env.errors import InputError
+from flexarm_env.identify.recording import Recording
+from flexarm_env.lab.guard import LARGEST_BODY
+from flexarm_env.lab.session import Session
+from flexarm_env.lab.uploads import MOST_RECORDINGS
+
+DEMO_ARM = "thesis-fem"
+NOT_TAKEN = f"not taken: at most {MOST_RECORDINGS} files at once, of {LARGEST_BODY // 2**20} MB each"
+
+
+class DataPanel:
+    """The recordings of a session.
+
+    Args:
+        session: whose recordings they are.
+        demo: returns the recordings of the demo.
+        say: shows what is being done.
+        complain: shows one line that says what is wrong, or takes it away.
+        changed: called when the recordings or the arm have changed.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        demo: Callable[[], list[Recording]],
+        say: Callable[[str], None],
+        complain: Callable[[str], None],
+        changed: Callable[[], None],
+    ) -> None:
+        self.session, self.demo = session, demo
+        self.say, self.complain, self.changed = say, complain, changed
+        html.h2("Recordings")
+        self.upload = ui.upload(
+            multiple=True,
+            auto_upload=True,
+            max_file_size=LARGEST_BODY,
+            max_files=MOST_RECORDINGS,
+            on_multi_upload=self._uploaded,
+            on_rejected=lambda: complain(NOT_TAKEN),
+        )
+        _drop_zone(self.upload)
+        self.files = html.ul().classes("files")
+        ui.button("Start with the demo", on_click=self._start_demo).props("outline")
+        arms = sorted({*shipped_arms(), session.base.name})
+        self.arm_choice = ui.select(arms, label="Arm", value=session.base.name, on_change=self._change_arm)
+
+    def refresh(self) -> None:
+        """List the session's recordings."""
+        self.files.clear()
+        with self.files:
+            for one in self.session.recordings:
+                with html.li():
+                    ui.label(f"{one.name}: {one.duration:.3g} s at {1.0 / one.sample_time:.4g} Hz")
+                    button = ui.button(icon="close", on_click=lambda _, one=one: self._remove(one)).props("flat dense round")
+                    button.props["aria-label"] = f"remove {one.name}"
+
+    @contextlib.asynccontextmanager
+    async def _reading(self) -> AsyncIterator[None]:
+        """Say that files are read, and show what came of it."""
+        self.complain("")
+        self.say("Reading and simulating …")
+        try:
+            yield
+        except InputError as error:
+            self.complain(str(error))
+        finally:
+            self.say("")
+            self.changed()
+
+    async def _uploaded(self, event: events.MultiUploadEventArguments) -> None:
+        lines = []
+        async with self._reading():
+            for file in event.files:
+                try:
+                    await run.io_bound(self.session.upload, file.name, await file.read())
+                except InputError as error:
+                    lines.append(str(error))
+            self.upload.reset()
+            if lines:
+                raise InputError(" — ".join(lines))
+
+    async def _start_demo(self) -> None:
+        async with self._reading():
+            if self.session.base.name != DEMO_ARM:
+                self.session.use([])
+                self.session.change_arm(Arm.load(DEMO_ARM, self.session.base.known))
+                self.arm_choice.set_value(DEMO_ARM)
+            await run.io_bound(lambda: self.session.use(self.demo()))
+
+    async def _change_arm(self) -> None:
+        name = str(self.arm_choice.value)
+        if name == self.session.base.name:
+            return
+        async with self._reading():
+            try:
+                await run.io_bound(self.session.change_arm, Arm.load(name, self.session.base.known))
+            finally:
+                self.arm_choice.set_value(self.session.base.name)
+
+    async def _remove(self, gone: Recording) -> None:
+        async with self._reading():
+            await run.io_bound(self.session.use, [one for one in self.session.recordings if one is not gone])
+
+
+def _drop_zone(upload: ui.upload) -> None:
+    """Build a labelled place to drop files at, which hands them to an upload that is not shown.
+
+    That upload's own button is one control within another, which a screen reader cannot tell apart.
+    """
+    take = f"getElement({upload.id}).$refs.qRef.addFiles"
+    with html.label().classes("drop") as zone:
+        html.span("Drop CSV files here, or choose some")
+        chosen = ui.element("input").props("type=file multiple accept=.csv,.txt,.dat,.mat")
+    chosen.on("change", js_handler=f"(e) => {{ {take}([...e.target.files]); e.target.value = '' }}")
+    mark = "e.currentTarget.classList"
+    zone.on("dragover", js_handler=f"(e) => {{ e.preventDefault(); {mark}.add('over') }}")
+    zone.on("dragleave", js_handler=f"(e) => {mark}.remove('over')")
+    zone.on("drop", js_handler=f"(e) => {{ e.preventDefault(); {mark}.remove('over'); {take}([...e.dataTransfer.files]) }}")
