@@ -7,6 +7,7 @@ import multiprocessing
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable
 from multiprocessing.connection import Connection
 from typing import Any
@@ -18,6 +19,8 @@ from flexarm_env.errors import InputError
 Progress = Callable[[float, str], None]
 #: Time [s] that a process has to clear up before it is killed.
 PATIENCE = 5.0
+#: Time [s] that its children have after it to clear up behind themselves.
+CLEARING = 1.0
 RUNNING, DONE, FAILED, STOPPED = "running", "done", "failed", "stopped"
 
 
@@ -81,8 +84,8 @@ class Job:
 
     def _reap(self) -> None:
         self._process.join(PATIENCE)
-        if self._process.is_alive():
-            _kill(self._process.pid or 0)
+        time.sleep(CLEARING)
+        _kill(self._process.pid or 0)  # the group: children may outlive their leader
         self._process.join()
 
 

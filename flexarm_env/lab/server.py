@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import socket
 from collections import OrderedDict
 from collections.abc import Sequence
@@ -38,6 +39,7 @@ def serve(arm: Arm, recordings: Sequence[Recording], columns: Path | None, port:
         InputError: if the port is taken.
     """
     port = _free(port)
+    os.environ.pop("PYTEST_CURRENT_TEST", None)  # NiceGUI would take a lab that a test has started for one of its own
     sessions: OrderedDict[str, Session] = OrderedDict()
 
     @ui.page("/", title="FlexArm lab")

@@ -49,6 +49,7 @@ h2 { font-size: 1rem; font-weight: 600; line-height: 1.4; margin: 0 0 .5rem; let
 .drop { display: block; border: 2px dashed #6b7379; border-radius: 8px; padding: 1rem; text-align: center; cursor: pointer; }
 .drop.over { background: #e3f0f8; border-color: #005a8c; } .drop:focus-within { outline: 3px solid #0072b2; }
 .drop input { position: absolute; opacity: 0; width: 1px; height: 1px; }
+.q-tooltip { background: #222; color: #fff; font-size: .85rem; opacity: 1 !important; }
 .q-btn { text-transform: none; }
 .empty { font-size: 1.1rem; line-height: 1.9; margin: .5rem 0; padding-left: 1.4rem; }
 .plot { width: 100%; }

@@ -1,0 +1,53 @@
+"""What the lab's server refuses before it reads."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+
+from flexarm_env.lab.guard import Guard
+
+HOSTS = ("127.0.0.1:8071", "localhost:8071")
+
+
+def answer(method: str = "GET", kind: str = "http", **headers: str) -> list[dict]:
+    """What a guarded application sends for a request."""
+    sent: list[dict] = []
+
+    async def application(scope, receive, send) -> None:
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+
+    async def send(message) -> None:
+        sent.append(message)
+
+    given = {"host": HOSTS[0]} | {key.replace("_", "-"): value for key, value in headers.items()}
+    scope = {"type": kind, "method": method, "headers": [(k.encode(), v.encode()) for k, v in given.items()]}
+    asyncio.run(Guard(application, HOSTS, largest=1000)(scope, None, send))
+    return sent
+
+
+@pytest.mark.parametrize(
+    ("status", "request_"),
+    [
+        (200, {}),
+        (200, {"host": "localhost:8071", "origin": "http://localhost:8071"}),
+        (200, {"method": "POST", "content_length": "1000"}),
+        (421, {"host": "evil.example"}),
+        (421, {"host": "evil.example:8071"}),
+        (421, {"host": "127.0.0.1:9000"}),
+        (421, {"host": ""}),
+        (403, {"origin": "http://evil.example"}),
+        (403, {"origin": "null"}),
+        (413, {"method": "POST", "content_length": "1001"}),
+        (411, {"method": "POST"}),
+        (411, {"method": "PUT", "content_length": "-1"}),
+    ],
+)
+def test_requests(status, request_):
+    assert answer(**request_)[0]["status"] == status
+
+
+def test_a_websocket_from_elsewhere_is_closed():
+    assert answer(kind="websocket", origin="http://evil.example")[0]["type"] == "websocket.close"
+    assert answer(kind="websocket", origin=f"http://{HOSTS[0]}")[0]["type"] != "websocket.close"

@@ -1,0 +1,263 @@
+"""The lab in a real browser: from the upload to the fallen error, on a recording with a hidden effect."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import tomllib
+import urllib.error
+import urllib.request
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("nicegui")
+pytest.importorskip("playwright")
+
+from browser import DESKTOP, PHONE, grave_faults, needs_chromium, opened, width_beyond
+from scipy.signal import cont2discrete
+
+import flexarm_env
+from flexarm_env.identify.recording import Recording
+
+PROJECT = Path(flexarm_env.__file__).parents[1]
+DEMO = Path(flexarm_env.__file__).parent / "demo"
+ARM = """
+[drive]
+torque_constant = 0.33
+gear_ratio = 1.5
+motor_inertia = 0.00193
+limit = 5.0
+[hub]
+inertia = 0.05
+[sensors.arm_angle]
+noise = "0.1 deg"
+[effects.viscous]
+coefficient = "0.1 Nms"
+"""
+#: Hidden in the recordings [Nm/rad, rad].
+STIFFNESS, REST_ANGLE = 0.3, 0.2
+PATIENCE = 180_000  # [ms], for a busy machine that compiles the plant first
+
+
+def rigid_arm_with_a_cable(path: Path, seed: int) -> None:
+    """Write a recording of the arm above with a cable, from the exact solution of J θ̈ + b θ̇ + k (θ − θ₀) = N K i."""
+    inertia, viscous, torque = 0.05 + 1.5**2 * 0.00193, 0.1, 1.5 * 0.33
+    a = np.array([[0.0, 1.0], [-STIFFNESS / inertia, -viscous / inertia]])
+    b = np.array([[0.0, 0.0], [torque / inertia, STIFFNESS * REST_ANGLE / inertia]])
+    step = 0.01
+    f, g, *_ = cont2discrete((a, b, np.eye(2), np.zeros((2, 2))), step)
+    draw = np.random.default_rng(seed)
+    current = np.repeat(draw.uniform(-2.0, 2.0, 16), 25)
+    state, angles = np.zeros(2), []
+    for i in current:
+        angles.append(state[0])
+        state = f @ state + g @ [i, 1.0]
+    noisy = np.array(angles) + draw.normal(0.0, np.deg2rad(0.1), len(angles))
+    Recording.from_arrays("run", np.arange(len(current)) * step, "current", current, {"arm_angle": noisy}).write(path)
+
+
+class Lab:
+    """`flexarm lab` as a process."""
+
+    def __init__(self, folder: Path, *arguments: str) -> None:
+        program = "from flexarm_env.cli import main; main()"
+        command = [sys.executable, "-c", program, "lab", "--port", "0", "--no-show", *arguments]
+        environment = os.environ | {"PYTHONPATH": str(PROJECT), "PYTHONUNBUFFERED": "1"}
+        self.log = (folder / "lab.log").open("w")
+        self.process = subprocess.Popen(command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=self.log, text=True)
+        line = self.process.stdout.readline()
+        self.url = re.search(r"http://127\.0\.0\.1:\d+/", line)[0]
+
+    def end(self) -> int:
+        self.process.send_signal(signal.SIGINT)
+        try:
+            return self.process.wait(30.0)
+        finally:
+            self.process.kill()
+            self.process.stdout.close()
+            self.log.close()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    made = tmp_path_factory.mktemp("lab")
+    (made / "bench.toml").write_text(ARM)
+    for seed, name in enumerate(("monday", "tuesday")):
+        rigid_arm_with_a_cable(made / f"{name}.csv", seed)
+    return made
+
+
+@pytest.fixture(scope="module")
+def lab(folder) -> Iterator[Lab]:
+    running = Lab(folder, "--arm", "bench.toml")
+    yield running
+    assert running.end() == 0
+    assert "Traceback" not in (folder / "lab.log").read_text()
+
+
+def upload(page, *paths: Path) -> None:
+    page.get_by_label("Drop CSV files here").set_input_files(paths)
+
+
+def shown_error(page) -> float:
+    """The held-out error of the arm as it is now, once it has been worked out."""
+    tile = page.locator(".tile").nth(1)
+    page.wait_for_function("tile => /→ [0-9.]+$/.test(tile.querySelector('.number').textContent)", arg=tile.element_handle())
+    return float(tile.locator(".number").inner_text().split("→")[1])
+
+
+@needs_chromium
+def test_from_the_upload_to_the_fallen_error(lab, folder):
+    with opened() as (page, errors):
+        page.set_default_timeout(PATIENCE)
+        page.goto(lab.url)
+        upload(page, folder / "monday.csv", folder / "tuesday.csv")
+        page.get_by_text("tuesday: 3.99 s at 100 Hz").wait_for()
+        page.locator(".main-svg").first.wait_for()
+        before = shown_error(page)
+        assert before > 20.0
+
+        page.get_by_role("button", name="Diagnose").click()
+        page.get_by_text("Missing: cable_stiffness").wait_for()
+        page.get_by_role("button", name="Add cable stiffness", exact=True).click()
+        page.locator(".ranked", has_text="cable stiffness").get_by_text("added").wait_for()
+        assert shown_error(page) < 1.2
+        falls = [float(t) for t in page.locator(".results .bartext").all_text_contents()]
+        assert falls[0] == pytest.approx(before, rel=0.01)
+        assert falls[-2] < 1.2
+        assert falls[-1] == 1.0  # the noise floor
+        stiffness = page.locator(".effect", has_text="cable stiffness").locator(".value").first.inner_text()
+        assert float(stiffness.split()[0]) == pytest.approx(STIFFNESS, rel=0.15)
+
+        with page.expect_download() as caught:
+            page.get_by_role("button", name="Arm file").click()
+        table = tomllib.loads(Path(caught.value.path()).read_text())
+        assert "cable_stiffness" in table["effects"]
+        assert [one["name"] for one in table["origin"]["recordings"]] == ["monday", "tuesday"]
+        with page.expect_download() as caught:
+            page.get_by_role("button", name="Report").click()
+        report = Path(caught.value.path()).read_text()
+        assert "Missing: cable_stiffness" in report
+        assert "flexarm diagnose monday.csv tuesday.csv" in report
+        assert errors == []
+
+
+@needs_chromium
+def test_a_drag_moves_the_model_and_a_reload_keeps_the_state(lab, folder):
+    with opened() as (page, errors):
+        page.set_default_timeout(PATIENCE)
+        page.goto(lab.url)
+        upload(page, folder / "monday.csv")
+        before = shown_error(page)
+        page.get_by_role("checkbox", name="cable stiffness").click()
+        slider = page.get_by_role("slider", name="cable_stiffness stiffness")
+        slider.focus()
+        for _ in range(20):
+            slider.press("ArrowRight")
+        number = page.locator(".tile .number").nth(1)
+        page.wait_for_function(
+            "([tile, old]) => tile.textContent.match(/→ ([0-9.]+)$/) && +RegExp.$1 !== old", arg=[number.element_handle(), before]
+        )
+        dragged = page.locator(".setting .value").first.inner_text()
+        page.reload()
+        page.get_by_text("monday: 3.99 s at 100 Hz").wait_for()
+        page.get_by_text(dragged).first.wait_for()
+        assert errors == []
+
+
+@needs_chromium
+def test_a_bad_upload_gets_its_line_and_another_tab_none_of_it(lab, folder):
+    (folder / "bad.csv").write_text("time [s],current [A],arm_angle [rad]\n0,1,0\n0.1,one,0\n")
+    with opened() as (page, errors):
+        page.set_default_timeout(PATIENCE)
+        page.goto(lab.url)
+        upload(page, folder / "monday.csv", folder / "bad.csv")
+        line = page.get_by_role("alert").get_by_text("bad.csv")
+        line.wait_for()
+        assert line.inner_text().startswith("bad.csv: row 3, column 'current': 'one' is not a number")
+        page.get_by_text("monday: 3.99 s").wait_for()  # the good one is taken
+        other = page.context.browser.new_page()
+        other.goto(lab.url)
+        other.get_by_text("Drop recordings of the arm in").wait_for()
+        assert other.get_by_text("monday").count() == 0
+        other.close()
+        assert errors == []
+
+
+@needs_chromium
+def test_a_diagnosis_shows_progress_and_stops(lab, folder):
+    with opened() as (page, errors):
+        page.set_default_timeout(PATIENCE)
+        page.goto(lab.url)
+        upload(page, folder / "monday.csv")
+        shown_error(page)
+        page.get_by_role("button", name="Diagnose").click()
+        page.get_by_text(re.compile(r"Diagnosing, \d+ %")).wait_for()
+        page.get_by_role("button", name="Stop").click()
+        page.get_by_text("stopped").wait_for()
+        assert page.get_by_role("button", name="Diagnose").is_enabled()
+        assert errors == []
+
+
+@needs_chromium
+@pytest.mark.parametrize("viewport", [DESKTOP, PHONE], ids=["desktop", "phone"])
+def test_axe_finds_no_serious_fault(lab, folder, viewport):
+    with opened(viewport=viewport) as (page, errors):
+        page.set_default_timeout(PATIENCE)
+        page.goto(lab.url)
+        page.get_by_text("Drop recordings of the arm in").wait_for()
+        assert grave_faults(page) == []
+        upload(page, folder / "monday.csv")
+        shown_error(page)
+        page.get_by_role("checkbox", name="coulomb", exact=True).click()
+        page.get_by_role("slider", name="coulomb torque").wait_for()
+        assert grave_faults(page) == []
+        assert width_beyond(page) <= 0
+        assert errors == []
+
+
+@needs_chromium
+@pytest.mark.slow
+def test_the_demo_s_hidden_effect_is_found(lab):
+    with opened() as (page, errors):
+        page.set_default_timeout(4 * PATIENCE)
+        page.goto(lab.url)
+        page.get_by_role("button", name="Start with the demo").click()
+        assert shown_error(page) > 10.0
+        page.get_by_role("button", name="Diagnose").click()
+        page.get_by_text("Missing: backlash").wait_for()
+        page.get_by_role("button", name="Add backlash", exact=True).first.click()
+        assert shown_error(page) < 1.5
+        assert errors == []
+
+
+def answered(request: urllib.request.Request) -> int:
+    try:
+        with urllib.request.urlopen(request) as answer:
+            return answer.status
+    except urllib.error.HTTPError as refused:
+        with refused:
+            return refused.code
+
+
+def test_only_the_machine_s_own_names_are_answered(lab):
+    port = lab.url.rstrip("/").rpartition(":")[2]
+    for host, status in ((f"127.0.0.1:{port}", 200), (f"evil.example:{port}", 421)):
+        request = urllib.request.Request(lab.url, headers={"Host": host})
+        assert answered(request) == status
+
+
+def test_a_taken_port_is_one_line(lab, folder):
+    port = lab.url.rstrip("/").rpartition(":")[2]
+    program = "from flexarm_env.cli import main; main()"
+    command = [sys.executable, "-c", program, "lab", "--port", port, "--no-show"]
+    run = subprocess.run(command, capture_output=True, text=True, env=os.environ | {"PYTHONPATH": str(PROJECT)}, check=False)
+    assert run.returncode == 2
+    assert len(run.stderr.splitlines()) == 1
+    assert f"port {port} cannot be used" in run.stderr
