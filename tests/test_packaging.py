@@ -18,7 +18,7 @@ PROJECT = Path(__file__).resolve().parent.parent
 PACKAGE = "flexarm_env"
 METADATA = tomllib.loads((PROJECT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
-HEAVY = {"torch", "stable_baselines3", "sb3_contrib", "plotly", "matplotlib", "polars", "pandas", "numba", "pygame"}
+HEAVY = {"torch", "stable_baselines3", "sb3_contrib", "plotly", "matplotlib", "polars", "pandas", "numba", "pygame", "nicegui"}
 
 # A module imports from its own layer and those above it in this list.
 LAYERS = (
@@ -41,6 +41,7 @@ NEVER = {
 ONLY_IN = {
     "gymnasium": {"tasks", "render", "env"}.union(*LAYERS[RANK["env"] + 1 :]),
     "pygame": {"render"},
+    "nicegui": {"lab"},
     **{name: {"sb3", "agents", "benchmarks"} for name in ("torch", "stable_baselines3", "sb3_contrib")},
 }
 
@@ -140,7 +141,7 @@ def test_a_right_import_passes(tmp_path, place, line):
 
 def test_every_import_is_declared():
     extras = METADATA["optional-dependencies"]
-    requirements = [*METADATA["dependencies"], *extras["plots"], *extras["render"], *extras["train"]]
+    requirements = [*METADATA["dependencies"], *extras["plots"], *extras["lab"], *extras["render"], *extras["train"]]
     declared = {re.match(r"[\w.-]+", line)[0].lower() for line in requirements}
     installed = importlib.metadata.packages_distributions()
     files = (PROJECT / PACKAGE).rglob("*.py")

@@ -12,11 +12,14 @@ from rich.text import Text
 
 from flexarm_env.identify.results import Addition, Comparison, Diagnosis, Estimate, Fit, Row
 from flexarm_env.pictures import words
+from flexarm_env.pictures.telling import error_by_second
 from flexarm_env.pictures.words import LABELS, NOTHING, PARTS, number
 
 #: Width of a table that goes to a file or a pipe.
 WIDE = 120
 SHORT_RANKING = 8
+#: Seconds that a line of bars shows at most.
+LONGEST_LINE = 40
 
 
 def console(to_stderr: bool = False) -> Console:
@@ -63,7 +66,9 @@ def comparison(result: Comparison) -> list[RenderableType]:
     kinds = list(dict.fromkeys(row.part for row in pooled if row.part != "all"))
     parts = [p for p in PARTS if p in kinds] + [p for p in kinds if p not in PARTS]
     by_part = [[part, *(_error(found.get((part, s))) for s in [*signals, "all"])] for part in parts]
-    by_recording = [[name, *(_error(each.get((name, s))) for s in [*signals, "all"])] for name in [*names, "all"]]
+    lines = _over_time(result)
+    by_recording = [[name, *(_error(each.get((name, s))) for s in [*signals, "all"]), lines.get(name, "")] for name in names]
+    by_recording.append(["all", *(_error(each.get(("all", s))) for s in [*signals, "all"]), ""])
     heads = [*(LABELS[s][0] for s in signals), "all"]
     tables: list[RenderableType] = [
         Text(words.comparison(result), style="bold"),
@@ -71,8 +76,24 @@ def comparison(result: Comparison) -> list[RenderableType]:
         table("… by regime and frequency band, windows of 1 s", ["part", *heads], by_part),
     ]
     if len(names) > 1:
-        tables.append(table("… by recording", ["recording", *heads], by_recording))
+        tables.append(_left(table("… by recording", ["recording", *heads, "second by second"], by_recording)))
+    elif lines:
+        tables.append(Text(f"Second by second: {next(iter(lines.values()))}"))
     return [*tables, *_notes(result.notes)]
+
+
+def _over_time(result: Comparison) -> dict[str, str]:
+    """Return a line of bars for each recording: its error in each second, all on one scale."""
+    errors = error_by_second(result.replays, result.noise)
+    largest = max((value for one in errors for value in one if np.isfinite(value)), default=0.0)
+    named = zip(result.replays, errors, strict=True)
+    return {one.name: words.sparkline(values[:LONGEST_LINE], largest) for one, values in named}
+
+
+def _left(made: Table) -> Table:
+    """Put the last column of a table at the left."""
+    made.columns[-1].justify = "left"
+    return made
 
 
 def _whole(row: Row | None, signal: str, noise: float) -> list[str]:
@@ -95,8 +116,12 @@ def _notes(notes: Sequence[str]) -> list[RenderableType]:
 def steps(steps_: Sequence[tuple[str, float]], free: Sequence[tuple[str, float]]) -> Table:
     """Return the error after each step."""
     runs = dict(free) | ({steps_[-1][0]: free[-1][1]} if steps_ and free else {})  # both end with the final model
-    rows = [[name, number(value), number(runs[name]) if name in runs else NOTHING] for name, value in steps_]
-    return table("Held-out error over noise (1 is perfect)", ["step", "windows of 1 s", "free run"], rows)
+    largest = max((value for _, value in steps_), default=1.0)
+    rows = [
+        [name, number(value), number(runs[name]) if name in runs else NOTHING, words.bar(value / largest)]
+        for name, value in steps_
+    ]
+    return _left(table("Held-out error over noise (1 is perfect)", ["step", "windows of 1 s", "free run", ""], rows))
 
 
 def estimates(title: str, found: Sequence[Estimate]) -> list[RenderableType]:
@@ -129,7 +154,7 @@ def diagnosis(result: Diagnosis) -> list[RenderableType]:
 
 def _ranking(result: Diagnosis) -> list[RenderableType]:
     rows = [
-        ["✓" if c.accepted else "", c.effect, f"{100 * c.gain:.0f} %", words.parameters_of(c.estimates)]
+        ["✓" if c.accepted else "", c.effect, words.bar(c.gain, 8), f"{100 * c.gain:.0f} %", words.parameters_of(c.estimates)]
         for c in result.ranking[:SHORT_RANKING]
     ]
     if not rows:
@@ -137,8 +162,8 @@ def _ranking(result: Diagnosis) -> list[RenderableType]:
     title = "Effects by the share of the excess error that each removes"
     if len(result.ranking) > SHORT_RANKING:
         title += f" ({SHORT_RANKING} of {len(result.ranking)}; --json FILE has all)"
-    made = text_table(title, ["", "effect", "gain", "parameters (90 % interval)"], rows)
-    made.columns[2].justify = "right"
+    made = text_table(title, ["", "effect", "", "gain", "parameters (90 % interval)"], rows)
+    made.columns[3].justify = "right"
     return [made]
 
 

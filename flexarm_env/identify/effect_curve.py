@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.hub_torque import HubMotion, acts_on_hub, changes, hub_torque, law_torque
+from flexarm_env.identify.hub_torque import HubMotion, acts_on_hub, arguments, changes, hub_torque, law_torque
 from flexarm_env.identify.recording import Recording
 
 Floats = NDArray[np.float64]
@@ -89,8 +89,7 @@ def driver_of(arm: Arm, name: str) -> str:
         return "speed" if "viscous" in changes(arm, name) else "angle"
     law = effect.port("friction") or effect.port("torque")
     assert law is not None
-    wanted = law.__code__.co_varnames[: law.__code__.co_argcount]
-    return next((driver for driver in ("time", "angle") if driver in wanted), "speed")
+    return next((driver for driver in ("time", "angle") if driver in arguments(law)), "speed")
 
 
 def _curve(

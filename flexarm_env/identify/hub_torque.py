@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import inspect
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -108,13 +109,18 @@ def law_torque(arm: Arm, names: Sequence[str], angle: Floats, speed: Floats, tim
             own, other = vars(arm.structure()), vars(arm.without_effect(name).structure())
             viscous, stiffness, constant = (own[key] - other[key] for key in HUB_FIELDS)
             total += constant - viscous * speed - stiffness * angle
-        motion = {"angle": angle, "speed": speed, "time": time, "direction": np.sign(speed), "at_rest": np.False_}
-        for port, sign in (("friction", -np.sign(speed)), ("torque", 1.0)):
+        motion = {"angle": angle, "time": time, "direction": np.sign(speed), "at_rest": np.False_}
+        for port, along, sign in (("friction", np.abs(speed), -np.sign(speed)), ("torque", speed, 1.0)):
             law = effect.port(port)
             if law is not None:
-                wanted = law.__code__.co_varnames[: law.__code__.co_argcount]
-                total += sign * np.vectorize(law, otypes=[float])(*(values.get(key, motion.get(key)) for key in wanted))
+                given = motion | {"speed": along} | dict(values)
+                total += sign * np.vectorize(law, otypes=[float])(*(given[key] for key in arguments(law)))
     return total
+
+
+def arguments(law: Callable[..., float]) -> tuple[str, ...]:
+    """Return the names of what a law takes."""
+    return tuple(inspect.signature(law).parameters)
 
 
 def _gains(linear: LinearArm, noise: Floats, step: float) -> tuple[Floats, Floats, Floats]:

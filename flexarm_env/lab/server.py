@@ -9,8 +9,7 @@ from collections import OrderedDict
 from collections.abc import Sequence
 from pathlib import Path
 
-from nicegui import app, core, ui
-from starlette.middleware import Middleware
+from nicegui import app, ui
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
@@ -58,7 +57,7 @@ def serve(arm: Arm, recordings: Sequence[Recording], columns: Path | None, port:
             session.stop()
 
     hosts = (f"{HOST}:{port}", f"localhost:{port}")
-    core.app.user_middleware.insert(0, Middleware(Guard, hosts=hosts))
+    app.add_middleware(Guard, hosts=hosts)
     print(f"FlexArm lab at http://{HOST}:{port}/ (Ctrl-C ends it)", flush=True)
     with contextlib.suppress(KeyboardInterrupt):
         ui.run(host=HOST, port=port, title="FlexArm lab", reload=False, show=show, show_welcome_message=False, language="en-US")

@@ -18,6 +18,7 @@ LABELS = {
 }
 NOTHING = "–"
 _BARS = "▁▂▃▄▅▆▇█"
+_EIGHTHS = " ▏▎▍▌▋▊▉"
 PARTS = ("moving fast", "moving slowly", "stuck")
 
 
@@ -82,6 +83,13 @@ def sparkline(values: Sequence[float], largest: float | None = None) -> str:
     if top <= 0.0:
         return "▁" * len(values)
     return "".join(_BARS[min(int(len(_BARS) * v / top), len(_BARS) - 1)] if math.isfinite(v) else " " for v in values)
+
+
+def bar(share: float, width: int = 12) -> str:
+    """Return a lying bar of a share, 0 to 1, of a width in characters."""
+    eighths = round(8 * width * min(max(share, 0.0), 1.0)) if math.isfinite(share) else 0
+    whole, rest = divmod(eighths, 8)
+    return "█" * whole + (_EIGHTHS[rest] if rest else "")
 
 
 def signals_of(rows: Sequence[str]) -> list[str]:

@@ -35,3 +35,10 @@ def test_steps_name_each_effect_once():
     free = words.steps_of({"nominal": 4.0, "refitted": 3.0, "final": 1.5}, ["backlash", "stribeck"])
     assert free[2:] == [("+ backlash + stribeck", 1.5)]
     assert words.arrows({"nominal": 4.0, "refitted": 3.0, "final": 1.0}, ["backlash"]) == "4.00 → 3.00 → 1.00"
+
+
+def test_sparklines_and_bars_go_from_nothing_to_the_largest():
+    assert words.sparkline([0.0, 1.0, 4.0, 8.0]) == "▁▂▅█"
+    assert words.sparkline([1.0, float("nan")], 8.0) == "▂ "
+    assert words.sparkline([0.0, 0.0]) == "▁▁"
+    assert [words.bar(share, 4) for share in (0.0, 0.5, 0.53125, 1.0, 2.0, float("nan"))] == ["", "██", "██▏", "████", "████", ""]

@@ -1,0 +1,89 @@
+"""The torque on the hub that recordings ask for, against the law that made them, and the effects' own curves."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import rig
+
+from flexarm_env import Arm, Recording
+from flexarm_env.effects import catalogue
+from flexarm_env.identify.effect_curve import driver_of, effect_curve, unexplained_curve
+from flexarm_env.identify.hub_torque import acts_on_hub, hub_torque, law_torque
+
+
+def recorded(settings: dict[str, float], experiment: str, seed: int = 3) -> Recording:
+    """A recording by the independent rig."""
+    made = rig.simulate(settings, experiment, seed=seed, duration=6.0)
+    signals = {name: made[name] for name in ("arm_angle", "motor_speed", "strain_mid", "strain_base")}
+    return Recording.from_arrays(experiment, made["time"], "current", made["current"], signals)
+
+
+@pytest.fixture(scope="module")
+def arm() -> Arm:
+    return Arm.load("thesis-fem")
+
+
+@pytest.fixture(scope="module")
+def with_stribeck() -> list[Recording]:
+    return [recorded({"stribeck": 0.15, "vs": 0.3}, name) for name in ("square", "sweep")]
+
+
+def test_friction_is_found_without_its_law(arm, with_stribeck):
+    for one in hub_torque(arm, with_stribeck):
+        moving = np.abs(one.speed) > 0.1
+        speed = one.speed[moving]
+        friction = np.sign(speed) * (0.282 + 0.15 * np.exp(-((speed / 0.3) ** 2))) + 0.1018 * speed
+        off = -one.torque[moving] - friction
+        assert np.median(np.abs(off)) < 0.02
+        assert abs(np.median(off)) < 0.01
+
+
+def test_an_effect_s_curve_holds_the_data_against_the_fitted_law(arm, with_stribeck):
+    true = arm.with_effect("stribeck", extra=0.15, falloff_speed=0.3)
+    curve = effect_curve(arm, true, "stribeck", with_stribeck)
+    assert (curve.driver, curve.quantity) == ("speed", "friction")
+    fast = np.abs(curve.bins) > 0.1
+    fitted = np.interp(curve.bins[fast], curve.line, curve.fitted)
+    assert np.abs(curve.middle[fast] - fitted).max() < 0.04
+    assert np.mean((curve.low[fast] <= fitted) & (fitted <= curve.high[fast])) > 0.6
+    slow = np.abs(np.abs(curve.line) - 0.15) < 0.02
+    assert np.abs(curve.fitted - curve.given)[slow].min() > 0.1
+
+
+def test_what_depends_on_the_angle_is_shown_against_it(arm):
+    recordings = [recorded({"cable": 0.15, "cable0": 0.1}, name) for name in ("square", "sweep")]
+    true = arm.with_effect("cable_stiffness", stiffness=0.15, rest_angle=0.1)
+    curve = effect_curve(arm, true, "cable_stiffness", recordings)
+    assert curve.driver == "angle"
+    slope, start = np.polyfit(curve.bins, curve.middle, 1)
+    assert slope == pytest.approx(-0.15, abs=0.03)
+    assert start == pytest.approx(0.15 * 0.1, abs=0.02)
+    assert np.allclose(curve.fitted, -0.15 * (curve.line - 0.1))
+    assert np.all(curve.given == 0.0)
+    left = unexplained_curve(arm, "angle", recordings)
+    assert np.polyfit(left.bins, left.middle, 1)[0] == pytest.approx(slope, abs=1e-9)
+
+
+def test_what_does_not_act_on_the_hub_has_no_such_curve(arm, with_stribeck):
+    assert effect_curve(arm, arm.with_effect("backlash"), "backlash", with_stribeck) is None
+    still = with_stribeck[0]
+    zeros = {name: np.zeros(len(still)) for name in still.signals}
+    nothing = Recording.from_arrays("still", still.time, "current", np.zeros(len(still)), zeros)
+    assert unexplained_curve(arm, "speed", [nothing]) is None
+
+
+@pytest.mark.parametrize(
+    "name", [n for n, e in catalogue().items() if e.port("friction") or e.port("torque")] + ["viscous", "cable_stiffness"]
+)
+def test_every_effect_on_the_hub_has_a_driver_and_a_law(arm, name):
+    changed = arm.with_effect(name)
+    assert acts_on_hub(changed, name)
+    assert driver_of(changed, name) in ("speed", "angle", "time")
+    points = np.linspace(0.1, 2.0, 7)
+    torque = law_torque(changed, [name], points, points, points)
+    assert np.isfinite(torque).all()
+    if changed.known[name].port("friction"):
+        against = law_torque(changed, [name], points, -points, points)
+        directed = {"asymmetric_coulomb", "asymmetric_viscous"} & {name}
+        assert np.allclose(against, torque if directed else -torque)
