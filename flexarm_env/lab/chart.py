@@ -14,21 +14,27 @@ class Chart:
     def __init__(self) -> None:
         self._place = html.div()
         self._plot: Any = None
+        self._ready = False
 
     def show(self, figure: go.Figure) -> None:
         """Draw a figure, in place of the last."""
         if self._plot is None:
             with self._place:
                 self._plot = ui.plotly(figure).classes("plot")
+            self._plot.on("plotly_afterplot", self._drawn, args=[], throttle=1.0)
         else:
             self._plot.update_figure(figure)
 
-    def restyle(self, *changes: Any) -> None:
-        """Change some traces, with the arguments of Plotly's restyle."""
-        if self._plot is not None:
+    def restyle(self, *changes: Any) -> bool:
+        """Change some traces, with the arguments of Plotly's restyle; return False if the browser has drawn none yet."""
+        if self._ready:
             self._plot.run_plot_method("restyle", *changes)
+        return self._ready
+
+    def _drawn(self) -> None:
+        self._ready = True
 
     def clear(self) -> None:
         """Take the figure away."""
         self._place.clear()
-        self._plot = None
+        self._plot, self._ready = None, False

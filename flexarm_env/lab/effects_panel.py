@@ -40,8 +40,7 @@ class EffectsPanel:
     def _row(self, name: str, effect: type[Effect]) -> None:
         with html.div().classes("effect"):
             box = ui.checkbox(name.replace("_", " "), value=name in self.session.draft.effects).props("dense")
-            with box:
-                ui.tooltip(effect.looks_like).props('anchor="center right" self="center left" max-width="20rem"')
+            box.props["title"] = effect.looks_like
             sliders = html.div().classes("sliders")
             self._fill(sliders, name, effect)
 
@@ -61,6 +60,7 @@ class EffectsPanel:
         place.clear()
         if name in self.session.draft.effects:
             with place:
+                ui.label(effect.looks_like).classes("muted")
                 for key in effect.parameters:
                     self._slider(name, effect, key)
 

@@ -75,12 +75,13 @@ class Session:
         Raises:
             InputError: if they do not fit the arm.
         """
+        # Pages look at the session while this works: nothing changes before all is known.
         live = Live(self.base, recordings) if recordings else None
+        steps = [] if live is None else [(AS_GIVEN, live.held_out(self.base).windows)]
         self.stop()
-        self.recordings, self.live = recordings, live
+        self.recordings, self.live, self.steps = recordings, live, steps
         self.arm = self.draft = self.base
         self.diagnosis, self.job, self.added = None, None, False
-        self.steps = [] if live is None else [(AS_GIVEN, live.held_out(self.base).windows)]
 
     def change_arm(self, arm: Arm) -> None:
         """Begin again with another arm and the same recordings.

@@ -33,7 +33,7 @@ h2 { font-size: 1rem; font-weight: 600; line-height: 1.4; margin: 0 0 .5rem; let
 .row { display: flex; flex-wrap: wrap; gap: .5rem; align-items: center; }
 .effects { max-height: 46rem; overflow-y: auto; }
 .effect { border-top: 1px solid #eceeef; padding: .25rem 0; }
-.sliders { padding: 0 .6rem 0 2rem; }
+.sliders { padding: 0 .6rem 0 2rem; } .sliders .muted { font-size: .8rem; line-height: 1.3; }
 .setting { display: flex; justify-content: space-between; font-size: .85rem; margin-top: .2rem; }
 .setting .value { font-variant-numeric: tabular-nums; font-weight: 600; }
 .ranked {
@@ -49,7 +49,6 @@ h2 { font-size: 1rem; font-weight: 600; line-height: 1.4; margin: 0 0 .5rem; let
 .drop { display: block; border: 2px dashed #6b7379; border-radius: 8px; padding: 1rem; text-align: center; cursor: pointer; }
 .drop.over { background: #e3f0f8; border-color: #005a8c; } .drop:focus-within { outline: 3px solid #0072b2; }
 .drop input { position: absolute; opacity: 0; width: 1px; height: 1px; }
-.q-tooltip { background: #222; color: #fff; font-size: .85rem; opacity: 1 !important; }
 .q-btn { text-transform: none; }
 .empty { font-size: 1.1rem; line-height: 1.9; margin: .5rem 0; padding-left: 1.4rem; }
 .plot { width: 100%; }

@@ -83,10 +83,9 @@ class ViewPanel:
             self.stale = True
             return
         first, self.given, self.now, self.held_out = self.now is None, given, now, None
-        if first:
+        shown = self.choice.value
+        if first or shown not in now.readings or not self.chart.restyle(*moved(live.signals, now.readings[shown])):
             self._draw()
-        elif self.choice.value in now.readings:
-            self.chart.restyle(*moved(live.signals, now.readings[self.choice.value]))
         self._numbers()
 
     async def _score(self) -> None:
