@@ -5,14 +5,20 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import json
 import os
 import re
+import shlex
 import shutil
+import signal
 import subprocess
 import sys
+import time
 import tomllib
+import urllib.error
+import urllib.request
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,6 +39,7 @@ BASELINES = PROJECT / "results" / "baselines" / "baselines.json"
 BASELINES_TABLE = re.compile(r"(?<=<!-- baselines -->\n).*?(?=<!-- /baselines -->)", re.DOTALL)
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)#]*)(?:#([^)]*))?\)")
 TIME_LIMIT = 900
+SERVES = "flexarm lab"
 
 
 @dataclass(frozen=True)
@@ -103,15 +110,41 @@ def run_block(document: Path, block: Block, folder: Path) -> None:
         (folder / block.file).write_text(block.text, encoding="utf-8")
     if block.language == "bash":
         made = [line for line in block.text.splitlines() if line.startswith("make ")]
-        rest = "\n".join(line for line in block.text.splitlines() if line not in made)
+        served = [line for line in block.text.splitlines() if line.startswith(SERVES)]
+        rest = "\n".join(line for line in block.text.splitlines() if line not in [*made, *served])
         for line in made:  # what a target runs is tested elsewhere; here, that there is one
             call(document, block, folder, ["make", "-n", "-C", str(PROJECT), *line.split()[1:]])
+        for line in served:
+            serve(document, block, folder, line)
         if rest.strip():
             call(document, block, folder, ["bash", "-euc", rest])
     elif block.language == "python" and not block.file:
         script = folder.parent / "snippet.py"
         script.write_text(block.text, encoding="utf-8")
         call(document, block, folder, [sys.executable, str(script)])
+
+
+def serve(document: Path, block: Block, folder: Path, line: str) -> None:
+    """Run a command that serves for ever until it answers, then end it with Ctrl-C."""
+    where = f"{name_of(document)}, line {block.line}"
+    command = [*shlex.split(line), "--no-show", "--port", "0"]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen(command, cwd=folder, env=environment(folder), text=True, **pipes) as process:
+        try:
+            said = process.stdout.readline()
+            assert "http://" in said, f"{where}: {said}{process.stderr.read()}"
+            address = re.search(r"http://\S+", said)[0]
+            for _ in range(600):
+                with contextlib.suppress(urllib.error.URLError), urllib.request.urlopen(address) as answer:
+                    assert answer.status == 200, where
+                    break
+                time.sleep(0.1)
+            else:
+                pytest.fail(f"{where}: nothing answers at {address}")
+            process.send_signal(signal.SIGINT)
+            assert process.wait(60.0) == 0, f"{where}: {process.stderr.read()}"
+        finally:
+            process.kill()
 
 
 def recordings_of_the_demo(folder: Path) -> None:
@@ -141,7 +174,11 @@ def recordings_of_the_bench(folder: Path) -> None:
             writer.writerows([f"{x:.6f}".replace(".", ",") for x in row] for row in zip(*columns.values(), strict=True))
 
 
-PREPARE = {"README.md": recordings_of_the_demo, "docs/your-arm.md": recordings_of_the_bench}
+PREPARE = {
+    "README.md": recordings_of_the_demo,
+    "docs/lab.md": recordings_of_the_demo,
+    "docs/your-arm.md": recordings_of_the_bench,
+}
 
 
 def prepare(document: Path, folder: Path) -> None:

@@ -16,7 +16,8 @@ from flexarm_env.lab.session import Session
 from flexarm_env.lab.uploads import MOST_RECORDINGS
 
 DEMO_ARM = "thesis-fem"
-NOT_TAKEN = f"not taken: at most {MOST_RECORDINGS} files at once, of {LARGEST_BODY // 2**20} MB each"
+ENVELOPE = 2**16  # [bytes], of what a request has beside the files
+NOT_TAKEN = f"not taken: at most {MOST_RECORDINGS} files at once, of {LARGEST_BODY // 2**20} MB together; cut them shorter"
 
 
 class DataPanel:
@@ -44,11 +45,12 @@ class DataPanel:
         self.upload = ui.upload(
             multiple=True,
             auto_upload=True,
-            max_file_size=LARGEST_BODY,
+            max_total_size=LARGEST_BODY - ENVELOPE,
             max_files=MOST_RECORDINGS,
             on_multi_upload=self._uploaded,
             on_rejected=lambda: complain(NOT_TAKEN),
         )
+        self.upload.on("failed", lambda: complain(NOT_TAKEN), args=[])
         _drop_zone(self.upload)
         self.files = html.ul().classes("files")
         ui.button("Start with the demo", on_click=self._start_demo).props("outline")
@@ -79,13 +81,9 @@ class DataPanel:
             self.changed()
 
     async def _uploaded(self, event: events.MultiUploadEventArguments) -> None:
-        lines = []
         async with self._reading():
-            for file in event.files:
-                try:
-                    await run.io_bound(self.session.upload, file.name, await file.read())
-                except InputError as error:
-                    lines.append(str(error))
+            files = [(file.name, await file.read()) for file in event.files]
+            lines = await run.io_bound(self.session.upload, files)
             self.upload.reset()
             if lines:
                 raise InputError(" — ".join(lines))

@@ -9,12 +9,13 @@ from collections import OrderedDict
 from collections.abc import Sequence
 from pathlib import Path
 
-from nicegui import app, ui
+from nicegui import app, run, ui
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 from flexarm_env.identify.recording import Recording
 from flexarm_env.lab.guard import Guard
+from flexarm_env.lab.live import Live
 from flexarm_env.lab.page import LabPage
 from flexarm_env.lab.session import Session
 
@@ -35,8 +36,10 @@ def serve(arm: Arm, recordings: Sequence[Recording], columns: Path | None, port:
         show: whether to open a browser.
 
     Raises:
-        InputError: if the port is taken.
+        InputError: if the port is taken, or the recordings do not fit the arm.
     """
+    if recordings:
+        Live(arm, recordings)  # refuses what does not fit before anything is served
     port = _free(port)
     os.environ.pop("PYTEST_CURRENT_TEST", None)  # NiceGUI would take a lab that a test has started for one of its own
     sessions: OrderedDict[str, Session] = OrderedDict()
@@ -46,7 +49,7 @@ def serve(arm: Arm, recordings: Sequence[Recording], columns: Path | None, port:
         await ui.context.client.connected()
         tab = ui.context.client.tab_id or ui.context.client.id
         if tab not in sessions:
-            sessions[tab] = _started(arm, recordings, columns)
+            sessions[tab] = await run.io_bound(_started, arm, recordings, columns)
             if len(sessions) > MOST_SESSIONS:
                 sessions.popitem(last=False)[1].stop()
         LabPage(sessions[tab], lambda: Recording.read_all(DEMO))

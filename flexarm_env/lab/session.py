@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,7 @@ from flexarm_env.arm_file import arm_text
 from flexarm_env.cli import outputs
 from flexarm_env.cli.report import report
 from flexarm_env.errors import InputError
+from flexarm_env.identify.data import prepare
 from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.results import Addition, Diagnosis
 from flexarm_env.lab.job import DONE, Job, Progress
@@ -60,14 +61,19 @@ class Session:
         """Whether work is under way."""
         return self.job is not None and self.job.state == "running"
 
-    def upload(self, name: str, content: bytes) -> None:
-        """Take in an uploaded file.
-
-        Raises:
-            InputError: one line that says what is wrong with it.
-        """
-        found = read_upload(self.base, name, content, self.columns, self.recordings)
-        self.use([*self.recordings, found])
+    def upload(self, files: Sequence[tuple[str, bytes]]) -> list[str]:
+        """Take in uploaded files, by name and content; return a line for each that is not taken."""
+        taken, lines = list(self.recordings), []
+        for name, content in files:
+            try:
+                found = read_upload(self.base, name, content, self.columns, taken)
+                prepare(self.base, [*taken, found])
+                taken.append(found)
+            except InputError as error:
+                lines.append(str(error))
+        if len(taken) > len(self.recordings):
+            self.use(taken)
+        return lines
 
     def use(self, recordings: list[Recording]) -> None:
         """Begin again with these recordings.

@@ -55,6 +55,6 @@ h2 { font-size: 1rem; font-weight: 600; line-height: 1.4; margin: 0 0 .5rem; let
 @media (max-width: 900px) {
   .lab { padding: .6rem .7rem 2rem; }
   .board { grid-template-columns: minmax(0, 1fr); grid-template-areas: "data" "view" "effects"; grid-template-rows: none; }
-  .verdict { font-size: 1.05rem; }
+  .verdict { font-size: 1.05rem; } .effects { max-height: none; }
 }
 """

@@ -58,7 +58,8 @@ def _glance(found: Findings) -> str:
     shown = [figure(drawn, "glance-where", "Where it fails", where)]
     diagnosis = found.diagnosis
     if diagnosis is not None and diagnosis.ranking:
-        caption = "✓ accepted; ≈ these data cannot tell it from that."
+        rivals = any(len(names) > 1 for names in diagnosis.equivalent)
+        caption = "✓ accepted; ≈ these data cannot tell it from that." if rivals else "✓ accepted."
         shown.append(figure(bars.ranking(diagnosis, 6), "glance-which", "What is missing", caption))
     if diagnosis is not None:
         steps = words.steps_of(diagnosis.error, diagnosis.effects)
@@ -75,8 +76,8 @@ def _curves(found: Findings) -> str:
     for curve in found.curves:
         name = curve.effect.replace("_", " ") or "unexplained torque"
         caption = (
-            f"The torque on the hub that the recordings ask for, estimated without any law of friction, against {curve.driver}; "
-            "samples at which the hub moves."
+            f"The torque on the hub that the recordings ask for, estimated without any law of friction, against {curve.driver}, "
+            f"while the hub moves{'' if curve.effect else '; less what the arm explains'}."
         )
         shown.append(figure(effect_figures.own_curve(curve), f"curve-{curve.effect}-{curve.driver}", name, caption))
     for effect, without in found.without.items():

@@ -22,7 +22,7 @@ def most_telling(before: Comparison, after: Comparison | None = None, length: fl
 
     Args:
         before: the arm as it came.
-        after: the corrected arm; without it the stretch is the one whose residual is largest.
+        after: the corrected arm; without it, or if nothing falls, the stretch is the one whose residual is largest.
         length: of the stretch [s].
     """
     best, found = -np.inf, ("", "", 0.0)
@@ -33,7 +33,7 @@ def most_telling(before: Comparison, after: Comparison | None = None, length: fl
             gains = _falls(old, new, signal, before.noise[signal], span)
             if gains.size and gains.max() > best:
                 best, found = float(gains.max()), (old.name, signal, float(old.time[int(gains.argmax())]))
-    return found
+    return most_telling(before, None, length) if after is not None and best <= 0.0 else found
 
 
 def worst_signals(comparison: Comparison) -> list[str]:

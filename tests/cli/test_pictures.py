@@ -25,6 +25,11 @@ def test_a_missing_library_for_pictures_is_one_line(flexarm, identify, runs, tmp
     assert "flexarm-env[plots]" in flexarm.refused("demo", "--output", tmp_path)
 
 
+def test_a_missing_library_of_the_lab_is_one_line(flexarm, monkeypatch):
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    assert "pip install 'flexarm-env[lab]'" in flexarm.refused("lab")
+
+
 @needs_plots
 def test_the_demo_draws_its_pictures(flexarm, identify, tmp_path):
     assert flexarm("demo", "--output", tmp_path / "demo") == 0

@@ -191,6 +191,24 @@ def test_a_bad_upload_gets_its_line_and_another_tab_none_of_it(lab, folder):
 
 
 @needs_chromium
+def test_files_can_be_dropped_and_large_ones_are_not_taken(lab, folder):
+    large = folder / "large.csv"
+    with large.open("wb") as file:
+        file.truncate(70 * 2**20)
+    with opened() as (page, errors):
+        page.set_default_timeout(PATIENCE)
+        page.goto(lab.url)
+        upload(page, large)
+        page.get_by_role("alert").get_by_text("not taken: at most 12 files at once, of 64 MB together").wait_for()
+        text = (folder / "monday.csv").read_text()
+        made = "text => { const d = new DataTransfer(); d.items.add(new File([text], 'dropped.csv')); return d }"
+        page.locator(".drop").dispatch_event("drop", {"dataTransfer": page.evaluate_handle(made, text)})
+        page.get_by_text("dropped: 3.99 s at 100 Hz").wait_for()
+        assert page.get_by_role("alert").is_hidden()
+        assert errors == []
+
+
+@needs_chromium
 def test_a_diagnosis_shows_progress_and_stops(lab, folder):
     with opened() as (page, errors):
         page.set_default_timeout(PATIENCE)

@@ -57,6 +57,19 @@ def test_recordings_begin_a_new_waterfall(session):
     assert session.draft is session.base
 
 
+def test_good_uploads_are_taken_and_bad_ones_have_a_line(session, tmp_path):
+    good = simulate(session.base, "sweep", duration=1.5, rate=200.0)
+    good.write(tmp_path / "good.csv")
+    good.part(0.0, 0.1).write(tmp_path / "short.csv")
+    files = [(name, (tmp_path / name).read_bytes()) for name in ("short.csv", "good.csv")]
+    (line,) = session.upload([*files, ("bad.csv", b"x")])[:1]
+    assert "short has 20 samples; at least 50 are needed" in line
+    assert [one.name for one in session.recordings] == ["pulse", "good"]
+    before = session.steps
+    assert len(session.upload([("bad.csv", b"x")])) == 1
+    assert session.steps is before
+
+
 def test_effects_are_ticked_and_dragged_in_the_draft_only(session):
     session.tick("backlash", True)
     session.drag("backlash", "gap", 0.04)
