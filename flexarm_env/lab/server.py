@@ -60,6 +60,7 @@ def serve(arm: Arm, recordings: Sequence[Recording], columns: Path | None, port:
             session.stop()
 
     hosts = (f"{HOST}:{port}", f"localhost:{port}")
+    app.config.quasar_config["loadingBar"] = {"skipHijack": True}  # a bar without a name: a screen reader stumbles over it
     app.add_middleware(Guard, hosts=hosts)
     print(f"FlexArm lab at http://{HOST}:{port}/ (Ctrl-C ends it)", flush=True)
     with contextlib.suppress(KeyboardInterrupt):
