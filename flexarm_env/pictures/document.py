@@ -37,6 +37,7 @@ th, td {{ padding: .22rem 1rem .22rem 0; text-align: left; vertical-align: top; 
 th {{ font-weight: 600; border-bottom: 1px solid #888; }}
 tr + tr td {{ border-top: 1px solid {GRID}; }}
 .n {{ text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }}
+p, li, h3, h1 {{ overflow-wrap: anywhere; }}
 pre {{ background: #f4f4f4; padding: .7rem; overflow-x: auto; font-size: .88rem; }}
 td.text {{ min-width: 15rem; }} td.code {{ font-family: ui-monospace, monospace; font-size: .82rem; overflow-wrap: anywhere; }}
 details {{ margin: .6rem 0; }} summary {{ cursor: pointer; padding: .3rem 0; font-weight: 600; }}

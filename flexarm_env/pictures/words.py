@@ -86,8 +86,10 @@ def sparkline(values: Sequence[float], largest: float | None = None) -> str:
 
 
 def bar(share: float, width: int = 12) -> str:
-    """Return a lying bar of a share, 0 to 1, of a width in characters."""
-    eighths = round(8 * width * min(max(share, 0.0), 1.0)) if math.isfinite(share) else 0
+    """Return a lying bar of a share, 0 to 1, of a width in characters; what is not nothing shows."""
+    if not share > 0.0:
+        return ""
+    eighths = max(round(8 * width * min(share, 1.0)), 1)
     whole, rest = divmod(eighths, 8)
     return "█" * whole + (_EIGHTHS[rest] if rest else "")
 

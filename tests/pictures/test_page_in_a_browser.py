@@ -21,7 +21,13 @@ DRAWN = "html[data-drawn]"
 @pytest.fixture(scope="module")
 def report(tmp_path_factory) -> Path:
     before = comparison(400, 0)
-    found = Findings(before, recordings(before), comparison(400, 5), diagnosis(), provenance={"command_line": "flexarm …"})
+    found = Findings(
+        before,
+        recordings(before),
+        comparison(400, 5),
+        diagnosis(),
+        provenance={"command_line": "flexarm " + 300 * "x", "version": "0.1.0", "commit": 40 * "c"},
+    )
     path = tmp_path_factory.mktemp("report") / "report.html"
     path.write_text(page(found), encoding="utf-8")
     return path

@@ -41,4 +41,5 @@ def test_sparklines_and_bars_go_from_nothing_to_the_largest():
     assert words.sparkline([0.0, 1.0, 4.0, 8.0]) == "▁▂▅█"
     assert words.sparkline([1.0, float("nan")], 8.0) == "▂ "
     assert words.sparkline([0.0, 0.0]) == "▁▁"
-    assert [words.bar(share, 4) for share in (0.0, 0.5, 0.53125, 1.0, 2.0, float("nan"))] == ["", "██", "██▏", "████", "████", ""]
+    assert [words.bar(share, 4) for share in (0.0, 1e-6, 0.5, 0.53125, 1.0, 2.0)] == ["", "▏", "██", "██▏", "████", "████"]
+    assert words.bar(float("nan")) == ""
