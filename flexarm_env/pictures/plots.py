@@ -63,5 +63,8 @@ def curve(time: Floats, values: Floats, step: float, **look: Any) -> Any:
     steps = np.diff(time)
     even = np.allclose(steps, steps[0], rtol=1e-6)
     x = {"x0": float(time[0]), "dx": round(float(time[-1] - time[0]) / len(steps), 9)} if even else {"x": digits(time, 7)}
-    trace: Any = go.Scattergl if len(time) > MANY else go.Scatter
+    trace: Any = go.Scatter
+    if len(time) > MANY:
+        trace, line = go.Scattergl, look["line"]
+        look["line"] = line | {"dash": "dash"} if "dash" in line else line  # it knows no lengths of dashes
     return trace(y=in_steps(values, step), mode="lines", **x, **look)

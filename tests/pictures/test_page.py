@@ -69,6 +69,12 @@ def test_curves_are_exact_to_a_fiftieth_of_the_noise():
         assert next(drawn, None) is None
 
 
+def test_a_long_recording_is_drawn_by_the_graphics_card():
+    drawn = figures(one_of(comparison(20_001, 0), comparison(20_001, 3)))["recording-pulse"]["data"]
+    assert {trace["type"] for trace in drawn} == {"scattergl"}
+    assert {trace["line"].get("dash") for trace in drawn} == {None, "dash"}
+
+
 def test_a_replay_that_ran_away_leaves_a_gap():
     result = comparison(50, 5)
     result.replays[0].free["arm_angle"][20:] = np.nan
