@@ -128,6 +128,7 @@ def _end_with(pipe: Connection, over: threading.Event) -> None:
         pipe.recv()
     if over.is_set():
         return
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # an interrupt within compiled code complains, to nobody's use
     signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
     if not over.wait(PATIENCE):
         _kill(os.getpid())

@@ -66,7 +66,7 @@ def test_a_process_that_dies_is_a_failure():
     assert "without a word" in job.text
 
 
-def test_stop_ends_it_and_its_children_at_once(tmp_path):
+def test_stop_ends_it_and_its_children_at_once(tmp_path, capfd):
     note = tmp_path / "children"
 
     def work(say):
@@ -86,3 +86,4 @@ def test_stop_ends_it_and_its_children_at_once(tmp_path):
     leader, child = map(int, note.read_text().split())
     assert gone(leader)
     assert gone(child)
+    assert capfd.readouterr().err == ""

@@ -134,6 +134,7 @@ def test_from_the_upload_to_the_fallen_error(lab, folder):
         assert falls[-1] == 1.0  # the noise floor
         stiffness = page.locator(".effect", has_text="cable stiffness").locator(".value").first.inner_text()
         assert float(stiffness.split()[0]) == pytest.approx(STIFFNESS, rel=0.15)
+        assert grave_faults(page) == []
 
         with page.expect_download() as caught:
             page.get_by_role("button", name="Arm file").click()
