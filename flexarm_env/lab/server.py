@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import os
 import socket
@@ -9,7 +10,7 @@ from collections import OrderedDict
 from collections.abc import Sequence
 from pathlib import Path
 
-from nicegui import app, run, ui
+from nicegui import app, background_tasks, run, ui
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
@@ -62,9 +63,20 @@ def serve(arm: Arm, recordings: Sequence[Recording], columns: Path | None, port:
     hosts = (f"{HOST}:{port}", f"localhost:{port}")
     app.config.quasar_config["loadingBar"] = {"skipHijack": True}  # a bar without a name: a screen reader stumbles over it
     app.add_middleware(Guard, hosts=hosts)
-    print(f"FlexArm lab at http://{HOST}:{port}/ (Ctrl-C ends it)", flush=True)
+    app.on_startup(lambda: background_tasks.create(_announce(port)))
     with contextlib.suppress(KeyboardInterrupt):
         ui.run(host=HOST, port=port, title="FlexArm lab", reload=False, show=show, show_welcome_message=False, language="en-US")
+
+
+async def _announce(port: int) -> None:
+    """Say where the lab is once it answers there."""
+    while True:
+        with contextlib.suppress(OSError):
+            _, writer = await asyncio.open_connection(HOST, port)
+            writer.close()
+            break
+        await asyncio.sleep(0.02)
+    print(f"FlexArm lab at http://{HOST}:{port}/ (Ctrl-C ends it)", flush=True)
 
 
 def _started(arm: Arm, recordings: Sequence[Recording], columns: Path | None) -> Session:
