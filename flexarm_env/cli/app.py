@@ -84,18 +84,24 @@ def diagnose(
     effects: Effects = None,
     report: Report = None,
     save: Save = None,
+    next_run: Annotated[
+        Path | None, typer.Option(metavar="FILE.csv", help="Write the input to record next, where something stays open.")
+    ] = None,
     seed: Seed = 0,
     jobs: Annotated[int, typer.Option(min=1, help="Processes to use.")] = 2,
     json: Json = None,
 ) -> None:
     """Tell whether constants are wrong or an effect is missing, which one, how sure, and what would settle it."""
-    _check(json, report, save, pictures=report is not None)
+    _check(json, report, save, next_run, pictures=report is not None)
     model, runs = _load(recordings, arm, columns, effects)
     from flexarm_env.cli import outputs, tables, work
+    from flexarm_env.files import write_whole
 
     result = work.diagnose(model, runs, seed, jobs)
     work.finish("diagnose", arm, runs, seed, json, result.as_json(), tables.diagnosis(result))
     _save(result.arm, save)
+    if next_run is not None and result.next_run is not None:
+        write_whole(next_run, result.next_run.as_csv())
     if report is not None:
         line = _command("diagnose", recordings, arm, columns, effects, seed)
         made = line | outputs.provenance("diagnose", arm, runs, seed)

@@ -148,7 +148,7 @@ def diagnosis(result: Diagnosis) -> list[RenderableType]:
         *_ranking(result),
         steps(words.steps_of(result.error, result.effects), free),
         *estimates("Constants", constants),
-        *_notes(result.notes),
+        *_notes([*result.notes, *([f"to settle what is open, {result.next_run.why}"] if result.next_run else [])]),
     ]
 
 

@@ -10,11 +10,12 @@ import numpy as np
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.data import Data
+from flexarm_env.identify.problem import score
 from flexarm_env.identify.refit import Refit
 from flexarm_env.identify.screen import Base, candidates, screening_base, starts_of, unexplained
 
 #: Steps towards the size, each by at most this factor.
-STEPS, LARGEST_STEP = 3, 30.0
+STEPS, LARGEST_STEP = 3, 100.0
 #: Starts of an effect that are tried: of a periodic one, from its slowest to its fastest.
 MOST_STARTS = 4
 
@@ -43,7 +44,8 @@ class Hiding:
 def could_hide(found: Refit, data: Data, least: float) -> dict[str, Hiding]:
     """Return the size of each effect that the arm lacks at which it would just be accepted.
 
-    What the constants can take over does not count: the effect's change of the innovations is projected off their slopes.
+    It counts by how much the effect raises the error in windows, less what the constants could take over of it: the share of
+    its change of the innovations that lies along their slopes.
 
     Args:
         found: the arm that is left in the end.
@@ -74,10 +76,12 @@ def _hidden(base: Base, name: str, start: dict[str, float], least: float) -> Hid
     """Return the size of an effect that changes the residual by as much as is accepted, from a start, by secants."""
     effect = base.problem.arm.known[name]
     sizes = {key: p for key, p in effect.parameters.items() if p.null is not None and start[key] != 0.0}
+    before = score(base.problem.arm, base.problem.data).windows ** 2
     values, multiple = dict(start), 1.0
     for _ in range(STEPS):
-        power = _power(base, base.problem.arm.with_effect(name, **values))
-        step = math.sqrt(least * len(base.residual) / max(power, 1e-12))
+        arm = base.problem.arm.with_effect(name, **values)
+        rise = (score(arm, base.problem.data).windows ** 2 - before) * _left_by_constants(base, arm)
+        step = math.sqrt(least / max(rise, 1e-12))
         multiple *= min(max(step, 1.0 / LARGEST_STEP), LARGEST_STEP)
         for key, p in sizes.items():
             value = start[key] / multiple if p.null == math.inf else start[key] * multiple
@@ -86,6 +90,8 @@ def _hidden(base: Base, name: str, start: dict[str, float], least: float) -> Hid
     return Hiding(key, abs(values[key]), parameter.unit, multiple)
 
 
-def _power(base: Base, arm: Arm) -> float:
-    change = unexplained(base, base.problem.residual_of(arm) - base.residual)
-    return float(np.dot(change, change))
+def _left_by_constants(base: Base, arm: Arm) -> float:
+    """Return which share of what another arm changes the constants of the first cannot take over."""
+    change = base.problem.residual_of(arm) - base.residual
+    left = unexplained(base, change)
+    return float(np.dot(left, left) / max(np.dot(change, change), 1e-12))

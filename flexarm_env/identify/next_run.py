@@ -14,6 +14,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.simulate import simulate
+from flexarm_env.signals import INPUTS
 
 Floats = NDArray[np.float64]
 
@@ -58,9 +59,10 @@ class NextRun:
         """Return what it is and why, without its samples."""
         return {"input": self.name, "separates": list(self.separates), "difference": self.difference, "why": self.why}
 
-    def recording(self) -> Recording:
-        """Return the input as a recording without signals, to be saved as CSV and played."""
-        return Recording.from_arrays("next-run", self.time, self.input_kind, self.command, {}, measured=False)
+    def as_csv(self) -> str:
+        """Return the input as the text of a recording without signals, to be played."""
+        rows = "".join(f"{float(t)!r},{float(c)!r}\n" for t, c in zip(self.time, self.command, strict=True))
+        return f"time [s],{self.input_kind} [{INPUTS[self.input_kind]}]\n{rows}"
 
 
 def propose(hypotheses: Mapping[str, Arm], interval: float) -> NextRun | None:

@@ -71,9 +71,9 @@ class ResultsPanel:
             self.fall.show(bars.waterfall(steps))
         else:
             self.fall.clear()
-        proposal = getattr(found, "next_run", None)
-        self.next_run.set_visibility(bool(proposal))
-        self.why.set_text(str(proposal["why"]) if proposal else "")
+        proposal = found.next_run if found is not None else None
+        self.next_run.set_visibility(proposal is not None)
+        self.why.set_text(proposal.why if proposal is not None else "")
 
     def enable(self, free: bool) -> None:
         """Let the buttons that begin work be pressed, or not."""

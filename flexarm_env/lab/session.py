@@ -238,12 +238,8 @@ class Session:
 
     def next_run(self) -> str | None:
         """Return the proposed next run as a CSV file of commands, None if there is no proposal."""
-        found = getattr(self.diagnosis, "next_run", None)
-        if not found:
-            return None
-        unit = "A" if self.base.input == "current" else "V"
-        rows = zip(found["input"]["time"], found["input"]["command"], strict=True)
-        return f"time [s],{self.base.input} [{unit}]\n" + "".join(f"{float(t)!r},{float(c)!r}\n" for t, c in rows)
+        found = self.diagnosis.next_run if self.diagnosis is not None else None
+        return None if found is None else found.as_csv()
 
 
 def _has(arm: Arm, path: str) -> bool:

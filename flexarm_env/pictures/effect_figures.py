@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 import plotly.graph_objects as go
 
 from flexarm_env.identify.effect_curve import UNITS, EffectCurve
+from flexarm_env.identify.next_run import NextRun
 from flexarm_env.identify.results import Comparison
 from flexarm_env.pictures import words
 from flexarm_env.pictures.overlays import title
@@ -75,11 +73,11 @@ def contribution(without: Comparison, after: Comparison) -> tuple[go.Figure, str
     return finished(figure, 330, "x unified", **legend()), f"{words.LABELS[signal][0]}, recording {recording}"
 
 
-def next_input(run: Mapping[str, Any], kind: str) -> go.Figure:
+def next_input(run: NextRun) -> go.Figure:
     """Return the command of a proposed run over time."""
-    time, command = (np.asarray(run["input"][key], dtype=float) for key in ("time", "command"))
-    step = max(float(np.ptp(command)), 1e-9) / 2000.0
-    figure = go.Figure(curve(time, command, step, line={"color": INK, "width": 1.3, "shape": "hv"}))
+    kind = run.input_kind
+    step = max(float(np.ptp(run.command)), 1e-9) / 2000.0
+    figure = go.Figure(curve(run.time, run.command, step, line={"color": INK, "width": 1.3, "shape": "hv"}))
     figure.update_xaxes(title_text="time [s]")
     figure.update_yaxes(title_text=f"{kind} [{'A' if kind == 'current' else 'V'}]")
     return finished(figure, 240)

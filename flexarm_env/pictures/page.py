@@ -137,10 +137,8 @@ def estimates(found: Sequence[Estimate]) -> str:
 
 
 def _smallest(diagnosis: Diagnosis) -> str:
-    found: Mapping[str, Mapping[str, Any]] = getattr(diagnosis, "smallest", None) or {}
     rows = [
-        [effect, str(one["parameter"]), words.number(float(one["value"])), words.plain_unit(str(one["unit"]))]
-        for effect, one in found.items()
+        [effect, one.parameter, words.number(one.value), words.plain_unit(one.unit)] for effect, one in diagnosis.smallest.items()
     ]
     text = "An effect below this size could be there, and these recordings would not show it."
     return (
@@ -151,14 +149,11 @@ def _smallest(diagnosis: Diagnosis) -> str:
 
 
 def _next_run(diagnosis: Diagnosis) -> str:
-    run: Mapping[str, Any] | None = getattr(diagnosis, "next_run", None)
-    if not run:
+    run = diagnosis.next_run
+    if run is None:
         return ""
-    told = " and ".join(name.replace("_", " ") for name in run.get("separates", ()))
-    parts = [paragraph(str(run["why"])), paragraph(f"It tells apart: {told}.") if told else ""]
-    if run.get("input"):
-        parts.append(figure(effect_figures.next_input(run, diagnosis.arm.input), "next-run", "The command to record with"))
-    return section("The next run", *parts)
+    drawn = figure(effect_figures.next_input(run), "next-run", "The command to record with")
+    return section("The next run", paragraph(f"{run.why[0].upper()}{run.why[1:]}."), drawn)
 
 
 def _errors(before: Comparison, after: Comparison | None) -> str:

@@ -12,6 +12,7 @@ import pytest
 from picture_results import diagnosis
 
 from flexarm_env import Arm, InputError, Recording, simulate
+from flexarm_env.identify.next_run import NextRun
 from flexarm_env.identify.results import Addition, Diagnosis
 from flexarm_env.lab.job import Job
 from flexarm_env.lab.session import Session
@@ -158,10 +159,10 @@ def test_the_arm_file_is_that_of_the_draft_and_keeps_no_interval_that_does_not_h
 
 def test_the_next_run_is_a_file_that_can_be_played(session, tmp_path):
     assert session.next_run() is None
-    run = {"why": "x", "separates": [], "input": {"time": np.arange(100) * 0.01, "command": np.sin(np.arange(100) * 0.1)}}
+    run = NextRun("a chirp", (), 0.0, np.arange(100) * 0.01, np.sin(np.arange(100) * 0.1), "current")
     object.__setattr__(session, "diagnosis", found(session))
     object.__setattr__(session.diagnosis, "next_run", run)
     path = tmp_path / "next.csv"
     path.write_text(session.next_run())
     played = Recording.read(path, measured=False)
-    assert np.allclose(played.command, run["input"]["command"], rtol=0.0, atol=0.0)
+    assert np.allclose(played.command, run.command, rtol=0.0, atol=0.0)

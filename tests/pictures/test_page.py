@@ -6,7 +6,7 @@ import base64
 import gzip
 import json
 import re
-from types import SimpleNamespace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,6 +16,8 @@ pytest.importorskip("plotly")
 from picture_results import SIGNALS, comparison, diagnosis, recordings
 from plotly.offline import get_plotlyjs
 
+from flexarm_env.identify.hiding import Hiding
+from flexarm_env.identify.next_run import NextRun
 from flexarm_env.pictures.page import Findings, page
 
 PLACE = re.compile(r'id="(figure-[^"]*)" style="[^"]*"><script type="text/plain">([^<]*)</script>')
@@ -139,13 +141,12 @@ def test_what_could_hide_and_the_next_run_are_shown_where_they_are_known():
     plain = one_of(comparison(200, 0), comparison(200, 3), diagnosis=diagnosis())
     assert "What could still hide" not in plain
     assert "The next run" not in plain
-    run = {"why": "A slow ramp breaks away.", "separates": ["stiction", "stribeck"]}
-    run["input"] = {"time": np.arange(50) * 0.01, "command": np.linspace(-1.0, 1.0, 50)}
-    more = vars(diagnosis()) | {"smallest": {"stiction": {"parameter": "extra", "value": 0.0123, "unit": "N*m"}}, "next_run": run}
-    text = one_of(comparison(200, 0), comparison(200, 3), diagnosis=SimpleNamespace(**more))
+    run = NextRun("slow ramps", ("stiction", "stribeck"), 2.5, np.arange(50) * 0.01, np.linspace(-1.0, 1.0, 50), "current")
+    found = replace(diagnosis(), smallest={"stiction": Hiding("extra", 0.0123, "N*m")}, next_run=run)
+    text = one_of(comparison(200, 0), comparison(200, 3), diagnosis=found)
     words = visible(text)
     assert re.search(r"stiction\s+extra\s+0.0123\s+N·m", words)
-    assert "It tells apart: stiction and stribeck." in words
+    assert "Record slow ramps: it decides between stiction and stribeck (2.5 × the noise apart)." in words
     assert figures(text)["next-run"]["data"][0]["y"][-1] == pytest.approx(1.0, abs=1e-3)
 
 

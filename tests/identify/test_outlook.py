@@ -1,0 +1,60 @@
+"""What could still hide in recordings, and the run to record next."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flexarm_env import Arm, Recording, fit, simulate
+from flexarm_env.identify.data import prepare
+from flexarm_env.identify.hiding import Hiding, could_hide
+from flexarm_env.identify.next_run import propose
+from flexarm_env.identify.refit import as_it_is
+
+LEAST = 0.2
+
+
+@pytest.fixture(scope="module")
+def arm() -> Arm:
+    return Arm.load("thesis")
+
+
+def recorded(arm: Arm) -> list[Recording]:
+    return [simulate(arm, "square", duration=6.0, rate=200.0, seed=3), simulate(arm, "pulse", duration=6.0, rate=200.0, seed=4)]
+
+
+@pytest.fixture(scope="module")
+def hidden(arm) -> dict[str, Hiding]:
+    nominal, data = prepare(arm, recorded(arm))
+    return could_hide(as_it_is(nominal, data), data, LEAST)
+
+
+@pytest.mark.parametrize("name", ["constant_torque", "tach_filter"])
+def test_a_third_of_what_could_hide_does_and_thrice_as_much_does_not(arm, hidden, name):
+    errors = []
+    for factor in (1.0 / 3.0, 3.0):
+        machine = arm.with_effect(name, **{hidden[name].parameter: factor * hidden[name].value})
+        errors.append(fit(arm, recorded(machine)).error["refitted"])
+    weak, strong = (error**2 - 1.0 for error in errors)
+    assert weak < LEAST < strong
+
+
+def test_the_next_run_tells_apart_what_no_creeping_shows(arm):
+    lag, offset = arm.with_effect("current_lag", time=0.01), arm.with_effect("input_delay", delay=0.01)
+    found = propose({"current_lag": lag, "input_delay": offset}, 0.005)
+    assert found is not None
+    assert found.separates == ("current_lag", "input_delay")
+    limit = arm.constants["drive"]["limit"]
+    assert np.abs(found.command).max() <= limit
+    played = Recording.from_arrays("next", found.time, found.input_kind, found.command, {}, measured=False)
+    noise = [np.hypot(s["noise"], s["resolution"] / np.sqrt(12.0)) for s in arm.sensors.values()]
+    runs = [np.stack(list(simulate(a, played, noise=False).signals.values()), axis=1) / noise for a in (lag, offset)]
+    assert np.sqrt(np.mean((runs[0] - runs[1]) ** 2)) == pytest.approx(found.difference)
+    assert f"{found.difference:.2g} × the noise" in found.why
+
+
+def test_with_nothing_to_decide_it_is_the_run_that_shows_most(arm):
+    found = propose({"": arm}, 0.005)
+    assert found is not None
+    assert found.separates == ()
+    assert "breaks away" in found.why
