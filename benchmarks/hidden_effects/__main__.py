@@ -1,5 +1,63 @@
-"""Run the benchmark: python -m benchmarks.hidden_effects."""
+"""Run the benchmark of hidden effects, and write its table; a run that was stopped goes on where it stopped."""
 
-from benchmarks.hidden_effects.calibrate import calibrate
+from __future__ import annotations
 
-calibrate(1, lambda t: print(t, flush=True))
+import argparse
+import fnmatch
+import os
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ.setdefault(variable, "1")
+
+from benchmarks.hidden_effects import baselines, table  # noqa: E402
+from benchmarks.hidden_effects.calibrate import calibrate  # noqa: E402
+from benchmarks.hidden_effects.cases import cases  # noqa: E402
+from benchmarks.hidden_effects.run import by_diagnosis, run  # noqa: E402
+
+METHODS = {"diagnose": by_diagnosis, "best-fit": baselines.best_fit_wins, "bic": baselines.stepwise_bic}
+RESULTS = Path(__file__).resolve().parents[2] / "results" / "hidden_effects"
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.hidden_effects", description=__doc__)
+    parser.add_argument("--seed", type=int, default=1, help="of the cases; 1 is for development")
+    parser.add_argument("--method", choices=METHODS, default="diagnose", help="that answers them")
+    parser.add_argument("--only", default="*", metavar="PATTERN", help="names of cases, as 'backlash-*'; no table is written")
+    parser.add_argument("--jobs", type=int, default=2, help="processes")
+    parser.add_argument("--output", type=Path, default=RESULTS, help="folder of answers and tables")
+    parser.add_argument("--calibrate", action="store_true", help="only: find the sizes of the effects again")
+    return parser.parse_args()
+
+
+def main() -> None:
+    """Answer the cases that are asked for."""
+    asked = _options()
+    began = time.perf_counter()
+
+    def say(text: str) -> None:
+        print(f"{time.perf_counter() - began:5.0f} s  {text}", file=sys.stderr, flush=True)
+
+    if asked.calibrate:
+        calibrate(asked.jobs, say)
+        return
+    chosen = [case for case in cases(asked.seed) if fnmatch.fnmatchcase(case.name, asked.only)]
+
+    def answered(count: int, answer: dict[str, Any]) -> None:
+        found, case = answer["found"], answer["case"]
+        said = ", ".join(found["effects"]) or found["verdict"]
+        say(f"{count} of {len(chosen)}  {case['name']}: {said}, error {found['error']['final']:.2f}")
+
+    folder = asked.output / f"{asked.method}-{asked.seed}"
+    answers = run(chosen, METHODS[asked.method], folder / "answers", asked.jobs, answered)
+    if asked.only == "*":
+        command = f"python -m benchmarks.hidden_effects --method {asked.method} --seed {asked.seed}"
+        for figure in table.write(folder, answers, asked.method, asked.seed, command):
+            print(f"{figure.what:50} {figure.goal:>12}  {figure.text:>16}  {'met' if figure.met else 'missed'}")
+
+
+if __name__ == "__main__":
+    main()

@@ -19,6 +19,8 @@ STRENGTHS = (1.0, 3.0, 10.0)
 #: By how much the model's constants are wrong, each of them evenly up to this share.
 WRONG = (0.0, 0.1, 0.3)
 NULLS, PAIRS = 60, 40
+#: By how much (a logarithm) sizes scatter around those of their strength.
+SCATTER = 0.2
 #: What the runs of a case are: the rig's experiments, the factor on the controller's gains, and a known payload [kg].
 EXPERIMENTS = (
     (("pulse", 1.0, 0.0), ("square", 1.0, 0.0), ("sweep", 1.0, 0.0)),
@@ -69,6 +71,7 @@ def stream(seed: int, name: str) -> np.random.Generator:
 def settings_of(hidden: Hidden, size: float, draw: np.random.Generator) -> dict[str, float]:
     """Return the rig's settings for an effect of a size."""
     sign = draw.choice([-1.0, 1.0]) if hidden.signed else 1.0
+    size *= float(np.exp(draw.uniform(-SCATTER, SCATTER)))
     others = {key: float(draw.uniform(*limits)) for key, limits in sorted(hidden.others.items())}
     return {hidden.setting: float(sign * size), **others}
 
@@ -95,8 +98,8 @@ def cases(seed: int) -> list[Case]:
             kind = "one" if effect in CATALOGUE else "outside"
             if f"{strength:g}" in sizes()[effect]:
                 out.append(_case(seed, f"{effect}-{strength:g}", kind, (effect,), strength))
-    for effect in CATALOGUE:  # a second draw at the strength that most goals are stated for
-        out.append(_case(seed, f"{effect}-3-again", "one", (effect,), 3.0))
+    for case in [c for c in out if c.strength == 3.0]:  # a second draw at the strength that most goals are stated for
+        out.append(_case(seed, f"{case.name}-again", case.kind, case.effects, 3.0))
     pairs = [pair for pair in combinations(CATALOGUE, 2) if "3" in sizes()[pair[0]] and "3" in sizes()[pair[1]]]
     for i in stream(seed, "pairs").choice(len(pairs), PAIRS, replace=False):
         out.append(_case(seed, "-".join(pairs[i]), "two", pairs[i], 3.0))

@@ -59,7 +59,8 @@ def covered(case: dict[str, Any], found: dict[str, Any]) -> Iterator[tuple[str, 
     for candidate in found["ranking"]:
         if candidate["accepted"] and candidate["effect"] in case["effects"]:
             for key, value in parameters(candidate["effect"], case["settings"]).items():
-                yield f"{candidate['effect']}.{key}", _holds(candidate["parameters"][key], value)
+                if key in candidate["parameters"]:
+                    yield f"{candidate['effect']}.{key}", _holds(candidate["parameters"][key], value)
     for name, (setting, nominal) in CONSTANTS.items():
         if name in found["constants"]:
             yield name, _holds(found["constants"][name], nominal * case["settings"].get(f"{setting}_x", 1.0))

@@ -1,0 +1,37 @@
+"""The published table, as Markdown and as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import flexarm_env
+from benchmarks.hidden_effects.score import Figure, figures, wrong
+from flexarm_env.cli.outputs import commit
+from flexarm_env.files import write_whole
+
+
+def markdown(found: Sequence[Figure], mistakes: Sequence[tuple[str, str, int]], made: str) -> str:
+    """Return the table of figures against goals, and that of what was taken for what."""
+    lines = ["# Hidden effects", "", made, "", "| | goal | measured | |", "|---|---|---:|---|"]
+    lines += [f"| {f.what} | {f.goal} | {f.text} | {'met' if f.met else 'missed'} |" for f in found]
+    lines += ["", "Single effects that were not named first, and what was said instead:", ""]
+    lines += ["| hidden | said | cases |", "|---|---|---:|"]
+    lines += [f"| {hidden} | {said} | {count} |" for hidden, said, count in mistakes]
+    return "\n".join(lines) + "\n"
+
+
+def write(folder: Path, answers: Sequence[dict[str, Any]], method: str, seed: int, command: str) -> list[Figure]:
+    """Write table.md and table.json into a folder; return the figures."""
+    found, mistakes = figures(answers), wrong(answers)
+    stamp = {"command": command, "version": flexarm_env.__version__, "commit": commit(), "seed": seed, "method": method}
+    made = (
+        f"Method `{method}`, seed {seed}, {len(answers)} cases, FlexArm {stamp['version']}, commit {stamp['commit']}: `{command}`"
+    )
+    write_whole(folder / "table.md", markdown(found, mistakes, made))
+    content = stamp | {"cases": len(answers), "figures": [asdict(f) for f in found], "mistakes": mistakes}
+    write_whole(folder / "table.json", json.dumps(content, indent=1) + "\n")
+    return found

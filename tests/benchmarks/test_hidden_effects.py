@@ -1,0 +1,90 @@
+"""The benchmark of hidden effects: its cases are keyed, its table says what was answered, a stopped run goes on."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from benchmarks.hidden_effects import table, truth
+from benchmarks.hidden_effects.cases import CATALOGUE, cases
+from benchmarks.hidden_effects.machine import record
+from benchmarks.hidden_effects.run import run
+from benchmarks.hidden_effects.score import figures, wrong
+from flexarm_env.effects import catalogue
+
+
+def answer(case, effects, verdict="effects", final=1.0):
+    return {
+        "case": case.as_json(),
+        "cpu_seconds": 1.0,
+        "found": {
+            "verdict": verdict,
+            "effects": effects,
+            "equivalent": [[e] for e in effects],
+            "ranking": [{"effect": e, "accepted": True, "parameters": {}} for e in effects],
+            "error": {"nominal": 9.0, "refitted": 5.0, "final": final},
+            "constants": {},
+        },
+    }
+
+
+def test_cases_are_as_many_and_as_mixed_as_they_say():
+    made = cases(1)
+    kinds = [case.kind for case in made]
+    assert len(made) >= 250
+    assert kinds.count("null") == 60
+    assert len({c.effects for c in made if c.kind == "one"}) >= 20
+    assert len({c.effects for c in made if c.kind == "outside"}) >= 6
+    assert len({c.name for c in made}) == len(made)
+    assert {run for c in made for run in c.runs} >= {("square", 0.6, 0.0), ("square", 1.0, 0.15)}
+
+
+def test_a_seed_gives_the_same_cases_and_another_others():
+    assert cases(1) == cases(1)
+    assert all(a.settings != b.settings for a, b in zip(cases(1), cases(2), strict=True) if a.kind in ("one", "outside"))
+
+
+def test_every_effect_is_in_the_catalogue_or_known_to_lack():
+    assert set(CATALOGUE) - set(catalogue()) == {"load_friction", "presliding"}
+    for effect in set(CATALOGUE) & set(truth.PARAMETERS):
+        assert set(truth.PARAMETERS[effect]) <= set(catalogue()[effect].parameters), effect
+
+
+def test_a_machine_is_recorded_with_what_is_known_of_it():
+    case = next(c for c in cases(1) if ("square", 1.0, 0.15) in c.runs and c.kind == "null")
+    runs = record(case)
+    assert [r.conditions.get("payload", 0.0) for r in runs] == [0.0, 0.15, 0.0]
+    again = record(case)
+    assert all(np.array_equal(a.signals["arm_angle"], b.signals["arm_angle"]) for a, b in zip(runs, again, strict=True))
+
+
+def test_the_table_counts_what_was_answered(tmp_path):
+    made = cases(1)
+    threes = [c for c in made if c.kind == "one" and c.strength == 3.0]
+    nulls = [c for c in made if c.kind == "null"]
+    answers = [answer(c, list(c.effects)) for c in threes[1:]] + [answer(threes[0], ["viscous"])]
+    answers += [answer(nulls[0], ["viscous"])] + [answer(c, [], "nothing_missing") for c in nulls[1:]]
+    found = {f.what: f for f in figures(answers)}
+    assert found["right effect first, strength 3"].value == pytest.approx(1.0 - 1.0 / len(threes))
+    assert found["false alarm on nulls"].value == pytest.approx(1.0 / 60.0)
+    assert found["false alarm on nulls"].met
+    assert wrong(answers) == [(threes[0].effects[0], "viscous", 1)]
+    table.write(tmp_path, answers, "diagnose", 1, "command")
+    assert "| false alarm on nulls | ≤ 2 % | 2 % of 60 | met |" in (tmp_path / "table.md").read_text()
+    assert json.loads((tmp_path / "table.json").read_text())["cases"] == len(answers)
+
+
+def test_a_stopped_run_goes_on(tmp_path):
+    chosen = cases(1)[:2]
+    calls = []
+
+    def method(arm, recordings):
+        calls.append(len(recordings))
+        return {"verdict": "unknown", "effects": []}
+
+    for _ in range(2):
+        run(chosen, method, tmp_path, 1, lambda count, answer: None)
+    assert calls == [3, 3]
+    assert (tmp_path / f"{chosen[0].name}.json").exists()
