@@ -100,7 +100,12 @@ def best_refit(nominal: Arm, data: Data) -> Refit:
 
 
 def polish(found: Refit, nominal: Arm, data: Data) -> Refit:
-    """Return the better of a refit and of another that starts from the nominal constants with its effects, gone on with.
+    """Return a refit as far as it goes, from where it ended or from the nominal constants."""
+    return _go_on(or_from_nominal(found, nominal, data), nominal, data)
+
+
+def or_from_nominal(found: Refit, nominal: Arm, data: Data) -> Refit:
+    """Return the better of a refit and of another that starts from the nominal constants with its effects.
 
     What the constants did to make up for a missing effect may have led them where there is no way back.
     """
@@ -111,7 +116,7 @@ def polish(found: Refit, nominal: Arm, data: Data) -> Refit:
     start = replace(nominal, effects={**nominal.effects, **added})
     other = _from_nominal(start, nominal, data)
     then = score(other.arm, data, held_out=False)
-    return _go_on(other if then.windows * then.free_run < now.windows * now.free_run else found, nominal, data)
+    return other if then.windows * then.free_run < now.windows * now.free_run else found
 
 
 def _from_nominal(start: Arm, nominal: Arm, data: Data) -> Refit:
