@@ -107,7 +107,8 @@ class Search:
         better = [t for t in trials if t.effect and t.cost < level]
         names, arms = [(t.effect,) for t in better[:FINALISTS]], [t.arm for t in better[:FINALISTS]]
         found = self._refit_all(names, arms, done + 0.5 * share, 0.1 * share)
-        if not any(excess(h.score.windows) < (1.0 - LEAST_TOTAL_GAIN) * excess(self.best.windows) for h in found):
+        best = min((h.score.windows for h in found), default=np.inf)
+        if best > FAR_OFF or excess(best) > (1.0 - LEAST_TOTAL_GAIN) * excess(self.best.windows):
             found += self._try_all(trials, [h.effects[0] for h in found], done + 0.6 * share, 0.2 * share)
         if found and not any(self._is_enough(h.score) for h in found):
             found += self._with_offset(found, done + 0.8 * share, 0.2 * share)
@@ -150,8 +151,10 @@ class Search:
         now = measure(self.best)
         singles = [h for h in found if len(h.effects) == 1]
         winner = found[0]
-        if len(winner.effects) > 1 and singles and not self._is_worth(singles[0].score, winner.score, measure):
-            winner = singles[0]
+        if len(winner.effects) > 1 and singles:
+            ways = (measure, _in_windows)  # of models that are far off, one may rest where it should move, and err little
+            if not any(self._is_worth(singles[0].score, winner.score, way) for way in ways):
+                winner = singles[0]
         removed = now - measure(winner.score)
         if not self._is_worth(self.best, winner.score, measure) or (self.accepted and self._stays_lost(winner.score)):
             return False
@@ -173,7 +176,7 @@ class Search:
 
     def _is_enough(self, found: Score) -> bool:
         """Whether an error leaves nothing to explain."""
-        return found.windows < PERFECT or excess(found.windows) < self._least(lambda score: excess(score.windows))
+        return found.windows < PERFECT or excess(found.windows) < self._least(_in_windows)
 
     def _is_worth(self, without: Score, found: Score, measure: Callable[[Score], float]) -> bool:
         """Whether one more effect removes enough of the excess error."""
@@ -315,6 +318,10 @@ def _at_bound(hypothesis: Hypothesis) -> bool:
     return False
 
 
+def _in_windows(score: Score) -> float:
+    return excess(score.windows)
+
+
 def measure_of(scores: Sequence[Score]) -> Callable[[Score], float]:
     """Return the excess error by which hypotheses are judged: in windows, or freely replayed where none comes near.
 
@@ -322,4 +329,4 @@ def measure_of(scores: Sequence[Score]) -> Callable[[Score], float]:
     """
     if min(s.windows for s in scores) > FAR_OFF:
         return lambda s: excess(s.free_run)
-    return lambda s: excess(s.windows)
+    return _in_windows
