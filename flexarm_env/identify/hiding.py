@@ -14,8 +14,15 @@ from flexarm_env.identify.problem import score
 from flexarm_env.identify.refit import Refit
 from flexarm_env.identify.screen import Base, candidates, screening_base, starts_of, unexplained
 
-#: Steps towards the size, each by at most this factor.
-STEPS, LARGEST_STEP = 3, 100.0
+#: The size is brought down by at most the first factor at once, and up by the second: an effect that only acts from some size
+#: on, as a limit does, shows nothing below. So many steps are taken before the last.
+LARGEST_STEP_DOWN, LARGEST_STEP_UP, STEPS = 100.0, 3.0, 4
+#: An effect raises the error in windows more than that of innovations, in which feedback hides it, by about this factor.
+IN_WINDOWS = 25.0
+#: A smaller size that leaves more than this share of a change hardly lowers it.
+STAYS = 0.7
+#: A change that is as good as none, and one of the size (a logarithm) that ends the steps.
+LEAST_CHANGE, CLOSE = 1e-12, 0.2
 #: Starts of an effect that are tried: of a periodic one, from its slowest to its fastest.
 MOST_STARTS = 4
 
@@ -28,13 +35,11 @@ class Hiding:
         parameter: the one that says how strong the effect is.
         value: its largest hidden value, or its smallest where a small value is strong.
         unit: of the value.
-        multiple: the same over a usual size.
     """
 
     parameter: str
     value: float
     unit: str
-    multiple: float = 1.0
 
     def as_json(self) -> dict[str, Any]:
         """Plain data."""
@@ -53,45 +58,77 @@ def could_hide(found: Refit, data: Data, least: float) -> dict[str, Hiding]:
         least: excess error, as a variance over the noise's, from which an effect is accepted.
     """
     base = screening_base(found, data)
+    before = score(found.arm, data).windows ** 2
     out = {}
     for name in candidates(found.arm):
-        effect = found.arm.known[name]
-        if effect.fitted:
+        if found.arm.known[name].fitted:
             starts = starts_of(base, name)
-            hidden = max(
-                (_hidden(base, name, start, least) for start in starts[:: -(-len(starts) // MOST_STARTS)]), key=_multiple
-            )
-            parameter = effect.parameters[hidden.parameter]
-            if parameter.low < hidden.value < parameter.high:
-                out[name] = hidden
+            tried = [_Tried(base, name, start) for start in starts[:: -(-len(starts) // MOST_STARTS)]]
+            for one in tried:
+                one.settle(least / IN_WINDOWS)
+            hidden = max(tried, key=lambda one: one.multiple)
+            for _ in range(1 if hidden.settled else STEPS):
+                change, left = hidden.change() if hidden.settled else (1.0, 1.0)
+                rise = score(hidden.arm, data).windows ** 2 - before
+                hidden.step(least, rise * left / max(change, LEAST_CHANGE))
+            parameter = found.arm.known[name].parameters[hidden.key]
+            if rise > 0.0 and parameter.low < hidden.value < parameter.high:
+                out[name] = Hiding(hidden.key, hidden.value, parameter.unit)
     return out
 
 
-def _multiple(hidden: Hiding) -> float:
-    """Return the key by which the size that hides best comes last."""
-    return hidden.multiple
+class _Tried:
+    """An effect of a size that is brought to where it would be accepted, from a start of its own."""
 
+    def __init__(self, base: Base, name: str, start: dict[str, float]) -> None:
+        self.base, self.name, self.start = base, name, start
+        known = base.problem.arm.known[name].parameters
+        self.sizes = {key: p for key, p in known.items() if p.null is not None and start[key] != 0.0}
+        self.key = next(iter(self.sizes))
+        self.multiple, self.settled = 1.0, True
 
-def _hidden(base: Base, name: str, start: dict[str, float], least: float) -> Hiding:
-    """Return the size of an effect that changes the residual by as much as is accepted, from a start, by secants."""
-    effect = base.problem.arm.known[name]
-    sizes = {key: p for key, p in effect.parameters.items() if p.null is not None and start[key] != 0.0}
-    before = score(base.problem.arm, base.problem.data).windows ** 2
-    values, multiple = dict(start), 1.0
-    for _ in range(STEPS):
-        arm = base.problem.arm.with_effect(name, **values)
-        rise = (score(arm, base.problem.data).windows ** 2 - before) * _left_by_constants(base, arm)
-        step = math.sqrt(least / max(rise, 1e-12))
-        multiple *= min(max(step, 1.0 / LARGEST_STEP), LARGEST_STEP)
-        for key, p in sizes.items():
-            value = start[key] / multiple if p.null == math.inf else start[key] * multiple
-            values[key] = min(max(value, p.low), p.high)
-    key, parameter = next(iter(sizes.items()))
-    return Hiding(key, abs(values[key]), parameter.unit, multiple)
+    @property
+    def values(self) -> dict[str, float]:
+        """Parameters at the present size; one whose absence is infinity is the stronger the smaller it is."""
+        out = dict(self.start)
+        for key, p in self.sizes.items():
+            value = out[key] / self.multiple if p.null == math.inf else out[key] * self.multiple
+            out[key] = min(max(value, p.low), p.high)
+        return out
 
+    @property
+    def value(self) -> float:
+        """The present size."""
+        return abs(self.values[self.key])
 
-def _left_by_constants(base: Base, arm: Arm) -> float:
-    """Return which share of what another arm changes the constants of the first cannot take over."""
-    change = base.problem.residual_of(arm) - base.residual
-    left = unexplained(base, change)
-    return float(np.dot(left, left) / max(np.dot(change, change), 1e-12))
+    @property
+    def arm(self) -> Arm:
+        """The arm with the effect."""
+        return self.base.problem.arm.with_effect(self.name, **self.values)
+
+    def change(self) -> tuple[float, float]:
+        """Return by how much the effect changes the innovations, as a variance, and what of it constants cannot take over."""
+        change = self.base.problem.residual_of(self.arm) - self.base.residual
+        left = unexplained(self.base, change)
+        return float(np.mean(change**2)), float(np.mean(left**2))
+
+    def settle(self, wanted: float) -> None:
+        """Scale the size until what constants cannot take over of the change of the innovations is as wanted.
+
+        An effect that brings a state of its own changes them however small it is, with the gains of the feedback.
+        """
+        last = math.inf
+        for _ in range(STEPS):
+            before, left = self.multiple, self.change()[1]
+            if before < 1.0 and left > STAYS * last:
+                self.multiple, self.settled = 1.0, False
+                break
+            last = left
+            self.step(wanted, left)
+            if abs(math.log(self.multiple / before)) < CLOSE:
+                break
+
+    def step(self, wanted: float, rise: float) -> None:
+        """Scale the size to where a variance that grows with its square is as wanted."""
+        factor = math.sqrt(wanted / max(rise, LEAST_CHANGE))
+        self.multiple *= min(max(factor, 1.0 / LARGEST_STEP_DOWN), LARGEST_STEP_UP)
