@@ -108,7 +108,8 @@ class Search:
         names, arms = [(t.effect,) for t in better[:FINALISTS]], [t.arm for t in better[:FINALISTS]]
         found = self._refit_all(names, arms, done + 0.5 * share, 0.1 * share)
         best = min((h.score.windows for h in found), default=np.inf)
-        if best > FAR_OFF or excess(best) > (1.0 - LEAST_TOTAL_GAIN) * excess(self.best.windows):
+        lost = best > FAR_OFF or excess(best) > (1.0 - LEAST_TOTAL_GAIN) * excess(self.best.windows)
+        if lost and not self.accepted:  # a second effect's fits take minutes, with the first in the arm
             found += self._try_all(trials, [h.effects[0] for h in found], done + 0.6 * share, 0.2 * share)
         if found and not any(self._is_enough(h.score) for h in found):
             found += self._with_offset(found, done + 0.8 * share, 0.2 * share)
