@@ -29,7 +29,7 @@ Progress = Callable[[float, str], None]
 #: Process noise of the levels that a fit goes through, over the rms of the drive's torque.
 LEVELS = (0.03, 0.003, 0.0003)
 #: A refit whose error on the fitted part is below the first is done; one that lowers it to the second is worth another.
-WELL, GOES_ON, MOST_AGAIN = 1.03, 0.98, 4
+WELL, GOES_ON, MOST_AGAIN = 1.03, 0.98, 6
 #: Constants that moved by more standard deviations of their priors than this are put back, one way after the other.
 STRAYED = (2.0, 1.0, np.inf)
 #: Relative decrease of the cost at which a level is left, and at which the last one is.
@@ -100,6 +100,11 @@ def best_refit(nominal: Arm, data: Data) -> Refit:
 
 
 def polish(found: Refit, nominal: Arm, data: Data) -> Refit:
+    """Return a refit as far as it goes, from where it ended or from the nominal constants."""
+    return _go_on(or_from_nominal(found, nominal, data), nominal, data)
+
+
+def or_from_nominal(found: Refit, nominal: Arm, data: Data) -> Refit:
     """Return the better of a refit and of another that starts from the nominal constants with its effects.
 
     What the constants did to make up for a missing effect may have led them where there is no way back.
