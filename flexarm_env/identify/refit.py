@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.coordinates import (
-    SHARES,
     Coordinate,
     base_coordinates,
     effect_coordinates,
@@ -28,10 +27,8 @@ Progress = Callable[[float, str], None]
 
 #: Process noise of the levels that a fit goes through, over the rms of the drive's torque.
 LEVELS = (0.03, 0.003, 0.0003)
-#: A refit whose error on the fitted part is below the first is done; one that lowers it to the second is worth another.
-WELL, GOES_ON, MOST_AGAIN = 1.03, 0.98, 6
-#: Constants that moved by more standard deviations of their priors than this are put back, one way after the other.
-STRAYED = (2.0, 1.0, np.inf)
+#: A refit whose error on the fitted part is below this is done.
+WELL = 1.1
 #: Relative decrease of the cost at which a level is left, and at which the last one is.
 ON_THE_WAY, AT_THE_END = 1e-2, 1e-4
 QUANTILE_90 = 1.6449
@@ -96,16 +93,11 @@ def as_it_is(arm: Arm, data: Data) -> Refit:
 def best_refit(nominal: Arm, data: Data) -> Refit:
     """Refit the constants; where they were right already, so that nothing is gained, stay near them."""
     before = score(nominal, data, held_out=False)
-    found = _go_on(_from_nominal(nominal, nominal, data), nominal, data)
+    found = refit(nominal, nominal, data)
     return found if score(found.arm, data, held_out=False).windows <= before.windows else refit(nominal, nominal, data, ())
 
 
 def polish(found: Refit, nominal: Arm, data: Data) -> Refit:
-    """Return a refit as far as it goes, from where it ended or from the nominal constants."""
-    return _go_on(or_from_nominal(found, nominal, data), nominal, data)
-
-
-def or_from_nominal(found: Refit, nominal: Arm, data: Data) -> Refit:
     """Return the better of a refit and of another that starts from the nominal constants with its effects.
 
     What the constants did to make up for a missing effect may have led them where there is no way back.
@@ -114,32 +106,9 @@ def or_from_nominal(found: Refit, nominal: Arm, data: Data) -> Refit:
     if now.windows < WELL:
         return found
     added = {name: found.arm.effects[name] for name in found.arm.effects if name not in nominal.effects}
-    start = replace(nominal, effects={**nominal.effects, **added})
-    other = _from_nominal(start, nominal, data)
+    other = refit(replace(nominal, effects={**nominal.effects, **added}), nominal, data)
     then = score(other.arm, data, held_out=False)
     return other if then.windows * then.free_run < now.windows * now.free_run else found
-
-
-def _from_nominal(start: Arm, nominal: Arm, data: Data) -> Refit:
-    """Refit from nominal constants: how friction is shared out is told by little, and led astray by all else that is wrong."""
-    held = replace(start, fixed=(*start.fixed, *SHARES))
-    found = refit(held, nominal, data)
-    return refit(replace(found.arm, fixed=start.fixed), nominal, data) if start.structure().separate_motor else found
-
-
-def _go_on(found: Refit, nominal: Arm, data: Data) -> Refit:
-    """Refit again while that helps: from where a refit ended, or with constants that strayed put back."""
-    now = score(found.arm, data, held_out=False).windows
-    ways = list(STRAYED)
-    for _ in range(MOST_AGAIN):
-        if now < WELL or not ways:
-            break
-        other = refit(put_back(found, nominal, ways[0]), nominal, data)
-        then = score(other.arm, data, held_out=False).windows
-        ways = [*ways[1:], ways[0]] if then < GOES_ON * now else ways[1:]
-        if then < now:
-            found, now = other, then
-    return found
 
 
 def put_back(found: Refit, nominal: Arm, strayed: float) -> Arm:

@@ -11,7 +11,7 @@ from joblib import Parallel, delayed
 from flexarm_env.arm import Arm
 from flexarm_env.identify.data import Data
 from flexarm_env.identify.problem import Score, score
-from flexarm_env.identify.refit import Progress, Refit, as_it_is, or_from_nominal, polish, put_back, refit
+from flexarm_env.identify.refit import Progress, Refit, as_it_is, polish, put_back, refit
 from flexarm_env.identify.screen import (
     CANDIDATE_LEVELS,
     Base,
@@ -298,7 +298,7 @@ def _try_effect(base: Base, name: str) -> list[Trial]:
 def _refit_arm(effects: tuple[str, ...], arm: Arm, nominal: Arm, data: Data, thorough: bool) -> Hypothesis:
     found = refit(arm, nominal, data, CANDIDATE_LEVELS)
     if thorough:
-        found = or_from_nominal(found, nominal, data)
+        found = polish(found, nominal, data)
     return Hypothesis(effects, found, score(found.arm, data))
 
 
