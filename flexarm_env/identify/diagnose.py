@@ -9,6 +9,7 @@ from dataclasses import replace
 from flexarm_env.arm import Arm, short_name
 from flexarm_env.identify.data import Data, prepare
 from flexarm_env.identify.hiding import could_hide
+from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.next_run import propose
 from flexarm_env.identify.origin import with_origin
 from flexarm_env.identify.preflight import preflight
@@ -49,12 +50,14 @@ def diagnose(
     if insufficient:
         return _insufficient(arm, nominal, data, before, notes, began, seed)
     say(0.05, "refitting the constants")
-    base = best_refit(nominal, data)
+    with in_threads(jobs):
+        base = best_refit(nominal, data)
     first = score(base.arm, data)
     search = Search(nominal, data, jobs, say)
     search.run(base, before, first)
-    found = _conclude(arm, nominal, data, search, before, first, notes, began, seed, recordings)
-    return replace(_with_outlook(found, search, data, say), seconds=time.perf_counter() - began)
+    with in_threads(jobs):
+        found = _conclude(arm, nominal, data, search, before, first, notes, began, seed, recordings)
+    return replace(_with_outlook(found, search, data, say, jobs), seconds=time.perf_counter() - began)
 
 
 def _verdict(search: Search, before: Score, first: Score) -> str:
@@ -114,10 +117,10 @@ def _conclude(
     )
 
 
-def _with_outlook(found: Diagnosis, search: Search, data: Data, say: Progress) -> Diagnosis:
+def _with_outlook(found: Diagnosis, search: Search, data: Data, say: Progress, jobs: int) -> Diagnosis:
     """Return the diagnosis with what could still hide, and what to record next where the recordings leave something open."""
     say(0.95, "sizing what could hide")
-    smallest = {} if found.verdict == "unknown" else could_hide(search.found, data, LEAST_REMOVED)
+    smallest = {} if found.verdict == "unknown" else could_hide(search.found, data, LEAST_REMOVED, jobs)
     hypotheses = search.open_hypotheses()
     next_run = propose(hypotheses, data.interval) if len(hypotheses) > 1 and found.verdict == "effects" else None
     return replace(found, smallest=smallest, next_run=next_run)

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 from flexarm_env.identify.data import prepare
+from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.origin import with_origin
 from flexarm_env.identify.problem import score
 from flexarm_env.identify.recording import Recording
@@ -16,7 +17,7 @@ from flexarm_env.identify.results import Addition, Estimate, Fit
 from flexarm_env.identify.screen import refit_effect
 
 
-def fit(arm: Arm, recordings: Sequence[Recording], progress: Progress | None = None, seed: int = 0) -> Fit:
+def fit(arm: Arm, recordings: Sequence[Recording], progress: Progress | None = None, seed: int = 0, jobs: int = 2) -> Fit:
     """Refit the constants of an arm.
 
     Args:
@@ -24,6 +25,7 @@ def fit(arm: Arm, recordings: Sequence[Recording], progress: Progress | None = N
         recordings: of the machine; the last part of each is held out.
         progress: called with the share done and what is being done.
         seed: recorded with the result.
+        jobs: threads.
 
     Raises:
         InputError: for recordings that do not fit the arm.
@@ -32,10 +34,11 @@ def fit(arm: Arm, recordings: Sequence[Recording], progress: Progress | None = N
     say = progress or (lambda done, text: None)
     nominal, data = prepare(arm, recordings)
     say(0.05, "refitting the constants")
-    found = best_refit(nominal, data)
-    before, after = score(nominal, data), score(found.arm, data)
-    final = with_all(found, nominal, data)
-    values = estimates(final, nominal)
+    with in_threads(jobs):
+        found = best_refit(nominal, data)
+        before, after = score(nominal, data), score(found.arm, data)
+        final = with_all(found, nominal, data)
+        values = estimates(final, nominal)
     say(1.0, "done")
     return Fit(
         arm=with_origin(arm, final.arm, values, recordings, "fit", seed),
@@ -46,7 +49,9 @@ def fit(arm: Arm, recordings: Sequence[Recording], progress: Progress | None = N
     )
 
 
-def add(effect: str, arm: Arm, recordings: Sequence[Recording], progress: Progress | None = None, seed: int = 0) -> Addition:
+def add(
+    effect: str, arm: Arm, recordings: Sequence[Recording], progress: Progress | None = None, seed: int = 0, jobs: int = 2
+) -> Addition:
     """Add one effect to an arm and refit everything.
 
     Args:
@@ -55,6 +60,7 @@ def add(effect: str, arm: Arm, recordings: Sequence[Recording], progress: Progre
         recordings: of the machine; the last part of each is held out.
         progress: called with the share done and what is being done.
         seed: recorded with the result.
+        jobs: threads.
 
     Raises:
         InputError: for an unknown effect, one that the arm has already or cannot have, or recordings that do not fit.
@@ -66,12 +72,13 @@ def add(effect: str, arm: Arm, recordings: Sequence[Recording], progress: Progre
     arm.with_effect(effect)
     nominal, data = prepare(arm.without_effect(effect), recordings)
     say(0.05, "refitting the constants")
-    base = best_refit(nominal, data)
-    say(0.4, f"adding {effect}")
-    found = refit_effect(effect, base, nominal, data)
-    scores = [score(a, data) for a in (nominal, base.arm, found.arm)]
-    final = with_all(found, nominal, data)
-    values = _effect_first(estimates(final, nominal), effect)
+    with in_threads(jobs):
+        base = best_refit(nominal, data)
+        say(0.4, f"adding {effect}")
+        found = refit_effect(effect, base, nominal, data)
+        scores = [score(a, data) for a in (nominal, base.arm, found.arm)]
+        final = with_all(found, nominal, data)
+        values = _effect_first(estimates(final, nominal), effect)
     say(1.0, "done")
     names = ("nominal", "refitted", "final")
     return Addition(

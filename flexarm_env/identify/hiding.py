@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from joblib import Parallel, delayed
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.data import Data
@@ -15,8 +16,8 @@ from flexarm_env.identify.refit import Refit
 from flexarm_env.identify.screen import Base, candidates, screening_base, starts_of, unexplained
 
 #: The size is brought down by at most the first factor at once, and up by the second: an effect that only acts from some size
-#: on, as a limit does, shows nothing below. So many steps are taken before the last.
-LARGEST_STEP_DOWN, LARGEST_STEP_UP, STEPS = 100.0, 3.0, 4
+#: on, as a limit does, shows nothing below. So many steps are taken before the last, and so many where only windows tell.
+LARGEST_STEP_DOWN, LARGEST_STEP_UP, STEPS, WINDOW_STEPS = 100.0, 3.0, 4, 2
 #: An effect raises the error in windows more than that of innovations, in which feedback hides it, by about this factor.
 IN_WINDOWS = 25.0
 #: A smaller size that leaves more than this share of a change hardly lowers it.
@@ -24,7 +25,7 @@ STAYS = 0.7
 #: A change that is as good as none, and one of the size (a logarithm) that ends the steps.
 LEAST_CHANGE, CLOSE = 1e-12, 0.2
 #: Starts of an effect that are tried: of a periodic one, from its slowest to its fastest.
-MOST_STARTS = 4
+MOST_STARTS = 3
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ class Hiding:
         return {"parameter": self.parameter, "value": self.value, "unit": self.unit}
 
 
-def could_hide(found: Refit, data: Data, least: float) -> dict[str, Hiding]:
+def could_hide(found: Refit, data: Data, least: float, jobs: int = 1) -> dict[str, Hiding]:
     """Return the size of each effect that the arm lacks at which it would just be accepted.
 
     It counts by how much the effect raises the error in windows, less what the constants could take over of it: the share of
@@ -56,25 +57,31 @@ def could_hide(found: Refit, data: Data, least: float) -> dict[str, Hiding]:
         found: the arm that is left in the end.
         data: the recordings.
         least: excess error, as a variance over the noise's, from which an effect is accepted.
+        jobs: processes.
     """
     base = screening_base(found, data)
     before = score(found.arm, data).windows ** 2
-    out = {}
-    for name in candidates(found.arm):
-        if found.arm.known[name].fitted:
-            starts = starts_of(base, name)
-            tried = [_Tried(base, name, start) for start in starts[:: -(-len(starts) // MOST_STARTS)]]
-            for one in tried:
-                one.settle(least / IN_WINDOWS)
-            hidden = max(tried, key=lambda one: one.multiple)
-            for _ in range(1 if hidden.settled else STEPS):
-                change, left = hidden.change() if hidden.settled else (1.0, 1.0)
-                rise = score(hidden.arm, data).windows ** 2 - before
-                hidden.step(least, rise * left / max(change, LEAST_CHANGE))
-            parameter = found.arm.known[name].parameters[hidden.key]
-            if rise > 0.0 and parameter.low < hidden.value < parameter.high:
-                out[name] = Hiding(hidden.key, hidden.value, parameter.unit)
-    return out
+    names = [name for name in candidates(found.arm) if found.arm.known[name].fitted]
+    sized = Parallel(n_jobs=jobs)(delayed(_hidden)(base, name, before, data, least) for name in names)
+    return {name: hiding for name, hiding in zip(names, sized, strict=True) if hiding}
+
+
+def _hidden(base: Base, name: str, before: float, data: Data, least: float) -> Hiding | None:
+    """Return the size at which one effect would just be accepted; None where no size within its bounds would be."""
+    starts = starts_of(base, name)
+    tried = [_Tried(base, name, start) for start in starts[:: -(-len(starts) // MOST_STARTS)]]
+    for one in tried:
+        one.settle(least / IN_WINDOWS)
+    hidden = max(tried, key=lambda one: one.multiple)
+    rise = 0.0
+    for _ in range(1 if hidden.settled else WINDOW_STEPS):
+        change, left = hidden.change() if hidden.settled else (1.0, 1.0)
+        rise = score(hidden.arm, data).windows ** 2 - before
+        hidden.step(least, rise * left / max(change, LEAST_CHANGE))
+    parameter = base.problem.arm.known[name].parameters[hidden.key]
+    if rise <= 0.0 or not parameter.low < hidden.value < parameter.high:
+        return None
+    return Hiding(hidden.key, hidden.value, parameter.unit)
 
 
 class _Tried:

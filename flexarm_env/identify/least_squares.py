@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from joblib import Parallel, delayed
+from joblib import Parallel, delayed, parallel_config
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
@@ -53,10 +53,15 @@ class Solution:
     reach: Reach
 
 
+def in_threads(jobs: int) -> parallel_config:
+    """Return a context in which columns of Jacobians are made in so many threads: replays leave the interpreter free."""
+    return parallel_config(backend="threading", n_jobs=jobs)
+
+
 def jacobian(residual: Residual, x: Floats, steps: Floats, first: int = 0) -> Floats:
     """Return central differences (rows, steps) of the residual over steps to either side, of x from the first on.
 
-    Replays leave the interpreter free: columns are made in as many threads as joblib's parallel_config allows, one by default.
+    Columns are made in one thread unless called in_threads.
     """
 
     def column(k: int, width: float) -> Floats:

@@ -28,7 +28,7 @@ Progress = Callable[[float, str], None]
 #: Process noise of the levels that a fit goes through, over the rms of the drive's torque.
 LEVELS = (0.03, 0.003, 0.0003)
 #: A refit whose error on the fitted part is below this is done.
-WELL = 1.1
+WELL = 1.2
 #: Relative decrease of the cost at which a level is left, and at which the last one is.
 ON_THE_WAY, AT_THE_END = 1e-2, 1e-4
 QUANTILE_90 = 1.6449

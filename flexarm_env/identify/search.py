@@ -10,6 +10,7 @@ from joblib import Parallel, delayed
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.data import Data
+from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.problem import Score, score
 from flexarm_env.identify.refit import Progress, Refit, as_it_is, polish, put_back, refit
 from flexarm_env.identify.screen import (
@@ -162,7 +163,8 @@ class Search:
         level = measure(winner.score) + SAME_GAIN * removed
         rivals = [h for h in found if len(h.effects) == len(winner.effects)]
         same = [h.effects[0] for h in rivals if h is winner or measure(h.score) <= level]
-        refitted = polish(winner.refit, self.nominal, self.data)
+        with in_threads(self.jobs):
+            refitted = polish(winner.refit, self.nominal, self.data)
         value = score(refitted.arm, self.data)
         for effect in winner.effects:
             self.accepted.append(effect)
@@ -203,7 +205,8 @@ class Search:
 
     def _go_on(self) -> None:
         """Refit once more without anything new: what that gains is no merit of another effect."""
-        found = refit(self.found.arm, self.nominal, self.data, CANDIDATE_LEVELS)
+        with in_threads(self.jobs):
+            found = refit(self.found.arm, self.nominal, self.data, CANDIDATE_LEVELS)
         value = score(found.arm, self.data)
         if value.windows < self.best.windows:
             self.found, self.best = found, value
@@ -253,7 +256,11 @@ class Search:
         return out
 
     def _parallel(self, tasks):  # type: ignore[no-untyped-def]
-        return Parallel(n_jobs=self.jobs, return_as="generator")(tasks)
+        if len(tasks) > 1:
+            yield from Parallel(n_jobs=self.jobs, return_as="generator")(tasks)
+        for function, positional, named in tasks if len(tasks) == 1 else []:
+            with in_threads(self.jobs):
+                yield function(*positional, **named)
 
     def _drop_useless(self) -> None:
         """Take out an effect that the later ones have made needless."""
