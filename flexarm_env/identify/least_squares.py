@@ -25,6 +25,8 @@ STEPS, WORTHWHILE, TRIALS = 4, 0.01, 5
 LEAST_HELPFUL = 1e-3
 #: Differences that shrank by less than this factor would give the same Jacobian once more.
 SHRINKS = 0.7
+#: By how much differences are narrower in the end.
+NARROW = 8.0
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,11 @@ class Reach:
     least: Floats
     most: Floats
     now: Floats
+
+    def narrowed(self) -> Reach:
+        """Return a reach that stays narrow: where a fit has come near, curvature does more harm than roughness."""
+        narrow = np.maximum(self.now / NARROW, self.least)
+        return Reach(self.least, narrow, narrow)
 
     def adapted(self, residual: Floats, j: Floats, grow: bool) -> Reach:
         """Return the reach at which each x changes the residual by as much as is left of it; no larger unless it may grow."""

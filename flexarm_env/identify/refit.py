@@ -69,14 +69,15 @@ def refit(arm: Arm, nominal: Arm, data: Data, levels: Sequence[float] = LEVELS, 
     """
     scale, own = torque_scale(arm, data.runs), arm.constants["drive"]["torque_noise"]
     noises = [level * scale for level in levels if level * scale > own]
-    noises += [own] * 2  # twice, since the first pass weighs the signals by errors that it then removes
+    noises += [own] * 3  # the first pass weighs the signals by errors that it then removes; the last goes by narrow differences
     tolerances = [ON_THE_WAY] * (len(noises) - 1) + [AT_THE_END]
     coordinates = free_coordinates(arm, nominal, data)
     x = position(arm, coordinates)
     reach = reach_at(coordinates, x)
-    for noise, tolerance in zip(noises, tolerances, strict=True):
+    for number, (noise, tolerance) in enumerate(zip(noises, tolerances, strict=True), start=1):
         problem = Problem(arm, data, coordinates, noise, np.ones((len(data.runs), len(data.signals))))
         problem.weigh(place_values(arm, coordinates, x), held)
+        reach = reach.narrowed() if number == len(noises) else reach
         solution = minimise(problem.residual, x, problem.prior, reach, iterations, tolerance=tolerance)
         x, reach = solution.x, solution.reach
     return Refit(place_values(arm, coordinates, x), coordinates, solution, problem)
