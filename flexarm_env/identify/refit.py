@@ -29,6 +29,8 @@ Progress = Callable[[float, str], None]
 LEVELS = (0.03, 0.003, 0.0003)
 #: A refit whose error on the fitted part is below this is done.
 WELL = 1.2
+#: Error in windows above which a model is far off, and how often one that stays so is refitted once more.
+FAR_OFF, MOST_AGAIN = 3.0, 4
 #: Relative decrease of the cost at which a level is left, and at which the last one is.
 ON_THE_WAY, AT_THE_END = 1e-2, 1e-4
 QUANTILE_90 = 1.6449
@@ -99,6 +101,24 @@ def best_refit(nominal: Arm, data: Data) -> Refit:
 
 
 def polish(found: Refit, nominal: Arm, data: Data) -> Refit:
+    """Return a refit as far as it goes, from where it ended or from the nominal constants.
+
+    Where the model stays far off, the error is so rough that one more refit may end at half of it.
+    """
+    found = or_from_nominal(found, nominal, data)
+    now = score(found.arm, data, held_out=False)
+    for _ in range(MOST_AGAIN):
+        if now.windows < FAR_OFF:
+            break
+        other = refit(found.arm, nominal, data)
+        then = score(other.arm, data, held_out=False)
+        if then.windows * then.free_run >= now.windows * now.free_run:
+            break
+        found, now = other, then
+    return found
+
+
+def or_from_nominal(found: Refit, nominal: Arm, data: Data) -> Refit:
     """Return the better of a refit and of another that starts from the nominal constants with its effects.
 
     What the constants did to make up for a missing effect may have led them where there is no way back.

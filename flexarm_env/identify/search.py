@@ -12,7 +12,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.data import Data
 from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.problem import Score, score
-from flexarm_env.identify.refit import Progress, Refit, as_it_is, polish, put_back, refit
+from flexarm_env.identify.refit import FAR_OFF, Progress, Refit, as_it_is, or_from_nominal, polish, put_back, refit
 from flexarm_env.identify.screen import (
     CANDIDATE_LEVELS,
     Base,
@@ -39,8 +39,6 @@ LEAST_GAIN, LEAST_TOTAL_GAIN = 0.25, 0.5
 #: Excess error, as a variance over the noise's, that an effect must remove at least, and as a share of that of the refitted
 #: constants: what is left of a large error comes from fits that end early, too.
 LEAST_REMOVED, LEAST_OF_FIRST = 0.2, 1e-3
-#: Held-out error in windows above which models are judged by their free replays.
-FAR_OFF = 3.0
 OFFSET = "constant_torque"
 MOST_EFFECTS = 3
 #: Two effects are equivalent if the error they leave differs by less than this share of what they remove.
@@ -305,7 +303,7 @@ def _try_effect(base: Base, name: str) -> list[Trial]:
 def _refit_arm(effects: tuple[str, ...], arm: Arm, nominal: Arm, data: Data, thorough: bool) -> Hypothesis:
     found = refit(arm, nominal, data, CANDIDATE_LEVELS)
     if thorough:
-        found = polish(found, nominal, data)
+        found = or_from_nominal(found, nominal, data)
     return Hypothesis(effects, found, score(found.arm, data))
 
 
