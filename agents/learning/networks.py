@@ -1,0 +1,39 @@
+"""A policy whose critic sees more than it does."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import torch
+from stable_baselines3.common.policies import ActorCriticPolicy
+from stable_baselines3.common.torch_layers import MlpExtractor
+
+
+class TwoViews(MlpExtractor):
+    """Networks of a policy that sees the first `visible` features, and of a critic that sees all of them."""
+
+    def __init__(self, visible: int, width: int, layers: list[int], activation: type[torch.nn.Module]) -> None:
+        super().__init__(visible, {"pi": layers, "vf": []}, activation)
+        critic = MlpExtractor(width, {"pi": [], "vf": layers}, activation)
+        self.visible, self.value_net, self.latent_dim_vf = visible, critic.value_net, critic.latent_dim_vf
+
+    def forward_actor(self, features: torch.Tensor) -> torch.Tensor:
+        """Return what the policy's last layer works on."""
+        return self.policy_net(features[:, : self.visible])
+
+
+class TwoViewPolicy(ActorCriticPolicy):
+    """Actor and critic of PPO, where the critic also sees what only a simulator knows (Pinto et al., RSS 2018).
+
+    Args:
+        visible: features that the actor sees; the rest is for the critic.
+        arguments: of ActorCriticPolicy.
+    """
+
+    def __init__(self, *arguments: Any, visible: int, **options: Any) -> None:
+        self.visible = visible
+        super().__init__(*arguments, **options)
+
+    def _build_mlp_extractor(self) -> None:
+        layers = list(self.net_arch)
+        self.mlp_extractor = TwoViews(self.visible, self.features_dim, layers, self.activation_fn)

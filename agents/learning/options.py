@@ -1,0 +1,198 @@
+"""What a training run is made of: every option with its default, its meaning, and how it is read from a TOML file."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields, is_dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from flexarm_env.controllers import CONTROLLERS
+from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.tasks import TASKS
+
+Section = TypeVar("Section")
+
+ALGORITHMS = ("ppo", "recurrent_ppo", "sac", "tqc")
+LARGEST_FILE = 100_000
+
+
+def option(default: Any, meaning: str, least: float = -math.inf, most: float = math.inf, allowed: Any = None) -> Any:
+    """Return a field of a section: its default, its meaning for a person, and what it may be."""
+    return field(default=default, metadata={"meaning": meaning, "least": least, "most": most, "allowed": allowed})
+
+
+@dataclass(frozen=True)
+class ArmsOptions:
+    """The arms that training sees, drawn anew for each episode; the nominal arm alone where all are 0."""
+
+    payload: bool = option(True, "whether a tip mass of 0 to 0.3 kg is drawn")
+    constants: float = option(0.1, "share by which torque constant, inertia, mass and stiffness differ", 0.0, 0.9)
+    friction: float = option(0.2, "share by which friction differs", 0.0, 0.9)
+    tap_rate: float = option(0.2, "taps on the hub per second, up to 0.5 Nm for 20 ms", 0.0, 50.0)
+    dropout_rate: float = option(0.5, "drop-outs of a sensor per second, 50 ms each", 0.0, 50.0)
+
+
+@dataclass(frozen=True)
+class InterfaceOptions:
+    """What the policy sees and what its action does."""
+
+    lags: tuple[int, ...] = option((0, 2, 4, 8, 16, 32), "how many samples of 5 ms ago the shown readings are", 0, 2000)
+    command_lags: tuple[int, ...] = option((0, 2, 4, 8), "how many samples of 5 ms ago the shown commands were sent", 0, 2000)
+    estimate: bool = option(True, "also show a Kalman filter's angle, bending, speeds and friction, and the payload estimate")
+    base: str = option("none", "classical controller to whose command the action is added", allowed=("none", *CONTROLLERS))
+    authority: float = option(1.0, "command at action 1, as a share of the drive's limit", 0.001, 2.0)
+    repeat: int = option(2, "samples of 5 ms for which an action is held", 1, 100)
+    privileged: bool = option(True, "PPO's critic alone also sees the true state and the drawn constants, in training only")
+
+
+@dataclass(frozen=True)
+class RewardOptions:
+    """What training rewards; evaluation measures something else, and does not see this.
+
+    Each sample costs the tip's error and the vibration, both on a scale where halving them is worth the same whether they
+    are large or small: log(1 + size / scale), over that of 100° or 3 V.
+    """
+
+    tip_scale: float = option(0.2, "error of the tip [deg] below which less is hardly worth anything", 1e-4, 100.0)
+    strain_scale: float = option(0.01, "vibration at the base gage [V] below which less is hardly worth anything", 1e-5, 10.0)
+    vibration: float = option(0.5, "weight of the vibration; the tip's error has 1", 0.0, 100.0)
+    near: float = option(0.0, "vibration costs only near the target: error [deg] at which it counts 1/e; 0: everywhere", 0.0, 1e3)
+    distance: float = option(0.0, "weight of the tip's error in rad, on a linear scale", 0.0, 100.0)
+    effort: float = option(0.02, "weight of (command / limit)²", 0.0, 100.0)
+    change: float = option(0.0, "weight of (change of the command / limit)²", 0.0, 100.0)
+
+
+@dataclass(frozen=True)
+class NetworkOptions:
+    """The policy's network; the critic's has the same layers."""
+
+    layers: tuple[int, ...] = option((64, 64), "units in each layer", 1, 4096)
+    activation: str = option("tanh", "between layers", allowed=("tanh", "relu", "elu"))
+    log_std: float = option(-1.5, "logarithm of the actions' standard deviation when PPO starts", -20.0, 5.0)
+    memory: int = option(64, "units of the recurrent layer of recurrent_ppo", 1, 4096)
+
+
+@dataclass(frozen=True)
+class LearningOptions:
+    """How the algorithm learns. What an algorithm does not use is left alone."""
+
+    learning_rate: float = option(1e-3, "at the start", 1e-8, 1.0)
+    last_learning_rate: float = option(2e-5, "at the end; linear between", 0.0, 1.0)
+    gamma: float = option(0.99, "discount per action", 0.0, 1.0)
+    batch_size: int = option(8000, "actions in a gradient step", 1, 10_000_000)
+    epochs: int = option(5, "PPO: passes over what a batch of episodes has shown", 1, 1000)
+    gae_lambda: float = option(0.95, "PPO: between one step's advantage (0) and the whole episode's (1)", 0.0, 1.0)
+    clip: float = option(0.2, "PPO: largest change of an action's probability in an update", 1e-3, 10.0)
+    entropy: float = option(0.0, "PPO: weight of the actions' entropy", 0.0, 10.0)
+    buffer: int = option(300_000, "SAC, TQC: actions remembered", 100, 100_000_000)
+    warm_up: int = option(5_000, "SAC, TQC: random actions before learning starts", 0, 100_000_000)
+    gradient_steps: int = option(8, "SAC, TQC: gradient steps after one action of every arm", 1, 100_000)
+    tau: float = option(0.005, "SAC, TQC: share of the critic that its slow copy takes over in a step", 1e-6, 1.0)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A whole training run."""
+
+    algorithm: str = option("ppo", "which of Stable-Baselines3 and sb3-contrib", allowed=ALGORITHMS)
+    task: str = option("slew", "what the arms do", allowed=tuple(TASKS))
+    arm: str = option("thesis", "name or file of the arm that training moves and the policy believes in")
+    actions: int = option(16_000_000, "actions in the whole run; PPO rounds up to whole batches of episodes", 1, 10**12)
+    at_once: int = option(256, "arms moved together, whose episodes start and end together", 1, 1_000_000)
+    seeds: int = option(3, "runs, with seeds from 0 up", 1, 1000)
+    arms: ArmsOptions = field(default_factory=ArmsOptions)
+    interface: InterfaceOptions = field(default_factory=InterfaceOptions)
+    reward: RewardOptions = field(default_factory=RewardOptions)
+    network: NetworkOptions = field(default_factory=NetworkOptions)
+    learning: LearningOptions = field(default_factory=LearningOptions)
+
+    def table(self) -> dict[str, Any]:
+        """Return the plan as tables that read_table understands."""
+        return asdict(self)
+
+
+def read_plan(path: Path) -> Plan:
+    """Read a TOML file.
+
+    Raises:
+        InputError: one line that names the file, the key, and how to mend it.
+    """
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise InputError(f"{path} is larger than {LARGEST_FILE} bytes: that is no configuration")
+        return read_table(tomllib.loads(path.read_bytes().decode("utf-8")))
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"{path} is not TOML: {error}") from None
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror}; name one such as configs/agents/ppo_slew.toml") from None
+
+
+def read_table(table: Mapping[str, Any]) -> Plan:
+    """Return the plan of a table as TOML or JSON give it.
+
+    Raises:
+        InputError: for a key that does not exist, or a value that is none.
+    """
+    return _read(Plan, table, "")
+
+
+def _read(section: type[Section], table: Any, prefix: str) -> Section:
+    if not isinstance(table, Mapping):
+        raise InputError(f"{prefix.rstrip('.')} = {table!r} is not a table; write [{prefix.rstrip('.')}]")
+    known = {entry.name: entry for entry in fields(section)}  # type: ignore[arg-type]
+    found = {}
+    for key, value in table.items():
+        if key not in known:
+            raise InputError(f"unknown key '{prefix}{key}'{did_you_mean(key, known)}")
+        default = getattr(section(), key)
+        if is_dataclass(default):
+            found[key] = _read(type(default), value, f"{prefix}{key}.")
+        else:
+            found[key] = _value(f"{prefix}{key}", value, default, known[key].metadata)
+    return section(**found)
+
+
+def _value(path: str, value: Any, default: Any, rules: Mapping[str, Any]) -> Any:
+    """Return a value in the type of its default."""
+    if isinstance(default, tuple):
+        if not isinstance(value, list | tuple):
+            raise InputError(f"{path} = {value!r}; give a list such as {list(default)}")
+        return tuple(_number(path, entry, 0, rules) for entry in value)
+    if isinstance(default, bool):
+        if not isinstance(value, bool):
+            raise InputError(f"{path} = {value!r}; give true or false")
+        return value
+    if isinstance(default, str):
+        if not isinstance(value, str):
+            raise InputError(f"{path} = {value!r}; give a text such as '{default}'")
+        if rules["allowed"] is not None and value not in rules["allowed"]:
+            raise InputError(f"{path} = '{value}'{did_you_mean(value, rules['allowed'])}")
+        return value
+    return _number(path, value, default, rules)
+
+
+def _number(path: str, value: Any, default: float, rules: Mapping[str, Any]) -> float:
+    kinds = int if isinstance(default, int) else int | float
+    if isinstance(value, bool) or not isinstance(value, kinds):
+        raise InputError(f"{path} = {value!r}; give a {'whole ' if kinds is int else ''}number")
+    if not rules["least"] <= value <= rules["most"]:
+        raise InputError(f"{path} = {value:g}; allowed are {rules['least']:g} to {rules['most']:g}")
+    return type(default)(value)
+
+
+def option_table() -> str:
+    """Return all options as Markdown: name, default, meaning."""
+    lines = ["| option | default | |", "|---|---|---|"]
+    for entry in fields(Plan):
+        section = getattr(Plan(), entry.name)
+        parts = [(f"{entry.name}.", part, section) for part in fields(section)] if is_dataclass(section) else [("", entry, Plan())]
+        for prefix, part, owner in parts:
+            default = getattr(owner, part.name)
+            shown = list(default) if isinstance(default, tuple) else default
+            lines.append(f"| `{prefix}{part.name}` | `{shown}` | {part.metadata['meaning']} |".replace("`True`", "`true`"))
+    return "\n".join(lines) + "\n"
