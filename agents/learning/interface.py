@@ -48,6 +48,8 @@ class PolicyInterface:
         self.base = make_controller(options.base, arm, interval) if options.base != "none" else None
         self.estimator = Estimator(arm, interval) if options.estimate else None
         self.weigher = PayloadEstimator(arm, interval) if options.estimate else None
+        #: What an average takes over of each new reading (averages, 1, 1).
+        self.fresh = 1.0 - np.exp(-interval / np.array(options.averages).reshape(-1, 1, 1))
         self.depth = max([*options.lags, *options.command_lags], default=0) + 1
         self.fine = np.array([FINE[signal] for signal in self.signals])
         self.angle = self.signals.index("arm_angle")
@@ -58,6 +60,7 @@ class PolicyInterface:
         """Start an episode of `count` arms."""
         self.count, self.sample = count, -1
         self.readings = np.zeros((self.depth, count, len(self.signals)))
+        self.averages = np.zeros((len(self.fresh), count, len(self.signals)))
         self.commands = np.zeros((self.depth, count))
         self.target, self.wanted, self.last = np.zeros(count), np.zeros(count), np.zeros(count)
         self.command = np.zeros(count)
@@ -74,7 +77,8 @@ class PolicyInterface:
         self.sample += 1
         here = self.sample % self.depth
         if self.sample == 0:
-            self.readings[:] = seen[:, :-1]
+            self.readings[:] = self.averages[:] = seen[:, :-1]
+        self.averages += self.fresh * (seen[:, :-1] - self.averages)
         self.readings[here], self.target = seen[:, :-1], seen[:, -1]
         if self.base:
             self.wanted = self.base.action(seen)[:, 0].astype(np.float64)
@@ -86,8 +90,8 @@ class PolicyInterface:
         """Return what the policy sees now (count, size)."""
         here, options = self.sample % self.depth, self.options
         found = []
-        for lag in options.lags:
-            readings = self.readings[(here - lag) % self.depth].copy()
+        for shown in [*(self.readings[(here - lag) % self.depth] for lag in options.lags), *self.averages]:
+            readings = shown.copy()
             readings[:, self.angle] = self.target - readings[:, self.angle]
             found.append(squeezed(readings, self.fine))
         for lag in options.command_lags:

@@ -5,8 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import torch
+from stable_baselines3.common.distributions import Distribution
 from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.torch_layers import MlpExtractor
+
+#: Bounds of the logarithm of an action's standard deviation.
+LEAST_LOG_STD, MOST_LOG_STD = -5.0, 1.0
 
 
 class TwoViews(MlpExtractor):
@@ -25,6 +29,9 @@ class TwoViews(MlpExtractor):
 class TwoViewPolicy(ActorCriticPolicy):
     """Actor and critic of PPO, where the critic also sees what only a simulator knows (Pinto et al., RSS 2018).
 
+    Actions are normal, with a standard deviation of their own in each state: a slew can be tried out roughly while a
+    last vibration of 0.01 V, which any noise would hide, is not disturbed.
+
     Args:
         visible: features that the actor sees; the rest is for the critic.
         arguments: of ActorCriticPolicy.
@@ -37,3 +44,11 @@ class TwoViewPolicy(ActorCriticPolicy):
     def _build_mlp_extractor(self) -> None:
         layers = list(self.net_arch)
         self.mlp_extractor = TwoViews(self.visible, self.features_dim, layers, self.activation_fn)
+        # made here, before the optimiser: the standard deviation, too, depends on what is seen
+        self.spread_net = torch.nn.Linear(self.mlp_extractor.latent_dim_pi, 1)
+        torch.nn.init.zeros_(self.spread_net.weight)
+        torch.nn.init.zeros_(self.spread_net.bias)
+
+    def _get_action_dist_from_latent(self, latent_pi: torch.Tensor) -> Distribution:
+        spread = torch.clamp(self.log_std + self.spread_net(latent_pi), LEAST_LOG_STD, MOST_LOG_STD)
+        return self.action_dist.proba_distribution(self.action_net(latent_pi), spread)

@@ -41,6 +41,7 @@ class InterfaceOptions:
 
     lags: tuple[int, ...] = option((0, 2, 4, 8, 16, 32), "how many samples of 5 ms ago the shown readings are", 0, 2000)
     command_lags: tuple[int, ...] = option((0, 2, 4, 8), "how many samples of 5 ms ago the shown commands were sent", 0, 2000)
+    averages: tuple[float, ...] = option((), "also readings averaged with these fading memories [s]", 0.005, 10.0)
     estimate: bool = option(True, "also show a Kalman filter's angle, bending, speeds and friction, and the payload estimate")
     base: str = option("none", "classical controller to whose command the action is added", allowed=("none", *CONTROLLERS))
     authority: float = option(1.0, "command at action 1, as a share of the drive's limit", 0.001, 2.0)
@@ -162,7 +163,7 @@ def _value(path: str, value: Any, default: Any, rules: Mapping[str, Any]) -> Any
     if isinstance(default, tuple):
         if not isinstance(value, list | tuple):
             raise InputError(f"{path} = {value!r}; give a list such as {list(default)}")
-        return tuple(_number(path, entry, 0, rules) for entry in value)
+        return tuple(_number(path, entry, default[0] if default else 0.0, rules) for entry in value)
     if isinstance(default, bool):
         if not isinstance(value, bool):
             raise InputError(f"{path} = {value!r}; give true or false")
@@ -190,8 +191,9 @@ def option_table() -> str:
     lines = ["| option | default | |", "|---|---|---|"]
     for entry in fields(Plan):
         section = getattr(Plan(), entry.name)
-        parts = [(f"{entry.name}.", part, section) for part in fields(section)] if is_dataclass(section) else [("", entry, Plan())]
-        for prefix, part, owner in parts:
+        nested = is_dataclass(section)
+        for part in fields(section) if nested else [entry]:
+            prefix, owner = (f"{entry.name}.", section) if nested else ("", Plan())
             default = getattr(owner, part.name)
             shown = list(default) if isinstance(default, tuple) else default
             lines.append(f"| `{prefix}{part.name}` | `{shown}` | {part.metadata['meaning']} |".replace("`True`", "`true`"))
