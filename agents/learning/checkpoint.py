@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import pickle
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +44,9 @@ def read_checkpoint(path: Path) -> dict[str, Any]:
         InputError: for a file that is no checkpoint.
     """
     try:
-        found = torch.load(path, map_location="cpu", weights_only=True)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # torch warns of a file that it did not write, and then refuses it
+            found = torch.load(path, map_location="cpu", weights_only=True)
     except (OSError, RuntimeError, pickle.UnpicklingError, EOFError) as error:
         raise InputError(f"{path} is no checkpoint ({str(error).splitlines()[0]}); delete it to start anew") from None
     if not (isinstance(found, dict) and {"run", "parts", "numpy", "episode"} <= found.keys()):

@@ -81,7 +81,7 @@ class PolicyInterface:
         self.averages += self.fresh * (seen[:, :-1] - self.averages)
         self.readings[here], self.target = seen[:, :-1], seen[:, -1]
         if self.base:
-            self.wanted = self.base.action(seen)[:, 0].astype(np.float64)
+            self.wanted = self.base.act(seen) / self.limit
         if self.estimator and self.weigher:
             self.state = self.estimator.correct(seen[:, :-1])
             self.payload = self.weigher.update(seen[:, :-1])

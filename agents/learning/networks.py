@@ -29,26 +29,30 @@ class TwoViews(MlpExtractor):
 class TwoViewPolicy(ActorCriticPolicy):
     """Actor and critic of PPO, where the critic also sees what only a simulator knows (Pinto et al., RSS 2018).
 
-    Actions are normal, with a standard deviation of their own in each state: a slew can be tried out roughly while a
-    last vibration of 0.01 V, which any noise would hide, is not disturbed.
+    Actions are normal, with one standard deviation for all states, or with one of their own in each.
 
     Args:
         visible: features that the actor sees; the rest is for the critic.
+        own_spread: whether the standard deviation depends on the state.
         arguments: of ActorCriticPolicy.
+        options: of ActorCriticPolicy.
     """
 
-    def __init__(self, *arguments: Any, visible: int, **options: Any) -> None:
-        self.visible = visible
+    def __init__(self, *arguments: Any, visible: int, own_spread: bool = False, **options: Any) -> None:
+        self.visible, self.own_spread = visible, own_spread
         super().__init__(*arguments, **options)
 
     def _build_mlp_extractor(self) -> None:
         layers = list(self.net_arch)
         self.mlp_extractor = TwoViews(self.visible, self.features_dim, layers, self.activation_fn)
-        # made here, before the optimiser: the standard deviation, too, depends on what is seen
-        self.spread_net = torch.nn.Linear(self.mlp_extractor.latent_dim_pi, 1)
-        torch.nn.init.zeros_(self.spread_net.weight)
-        torch.nn.init.zeros_(self.spread_net.bias)
+        if self.own_spread:
+            # made here, before the optimiser is
+            self.spread_net = torch.nn.Linear(self.mlp_extractor.latent_dim_pi, 1)
+            torch.nn.init.zeros_(self.spread_net.weight)
+            torch.nn.init.zeros_(self.spread_net.bias)
 
     def _get_action_dist_from_latent(self, latent_pi: torch.Tensor) -> Distribution:
+        if not self.own_spread:
+            return super()._get_action_dist_from_latent(latent_pi)
         spread = torch.clamp(self.log_std + self.spread_net(latent_pi), LEAST_LOG_STD, MOST_LOG_STD)
         return self.action_dist.proba_distribution(self.action_net(latent_pi), spread)

@@ -73,6 +73,7 @@ class NetworkOptions:
     layers: tuple[int, ...] = option((64, 64), "units in each layer", 1, 4096)
     activation: str = option("tanh", "between layers", allowed=("tanh", "relu", "elu"))
     log_std: float = option(-1.5, "logarithm of the actions' standard deviation when PPO starts", -20.0, 5.0)
+    own_spread: bool = option(False, "PPO: the actions' standard deviation depends on the state; else it is one for all")
     memory: int = option(64, "units of the recurrent layer of recurrent_ppo", 1, 4096)
 
 
