@@ -22,7 +22,7 @@ LEVEL = 0.95
 def mean_interval(values: Floats, seed: int = 0) -> Interval:
     """Return the mean of values (arms,) and the ends of its 95 % bootstrap interval."""
     draws = np.random.default_rng(seed).integers(0, len(values), (RESAMPLES, len(values)))
-    return _with_ends(float(values.mean()), values[draws].mean(axis=1))
+    return with_ends(float(values.mean()), values[draws].mean(axis=1))
 
 
 def paired_difference(values: Floats, reference: Floats, seed: int = 0) -> Interval:
@@ -51,8 +51,8 @@ def stratified_interval(
         seed: of the draws.
     """
     draw = np.random.default_rng(seed)
-    found = [statistic(_joined([_drawn_again(values, draw) for values in strata])) for _ in range(RESAMPLES)]
-    return _with_ends(statistic(_joined(strata)), np.array(found))
+    found = [statistic(_joined([drawn_again(values, draw) for values in strata])) for _ in range(RESAMPLES)]
+    return with_ends(statistic(_joined(strata)), np.array(found))
 
 
 def improvement(values: Floats, reference: Floats, seed: int = 0) -> Interval:
@@ -70,7 +70,7 @@ def improvement(values: Floats, reference: Floats, seed: int = 0) -> Interval:
         arms = draw.integers(0, better.shape[2], better.shape[2])
         others, runs = (draw.integers(0, size, size) for size in better.shape[:2])
         found.append(better[np.ix_(others, runs, arms)].mean())
-    return _with_ends(float(better.mean()), np.array(found))
+    return with_ends(float(better.mean()), np.array(found))
 
 
 def _better(values: Floats, other: Floats) -> Floats:
@@ -79,7 +79,8 @@ def _better(values: Floats, other: Floats) -> Floats:
     return found
 
 
-def _drawn_again(values: Floats, draw: np.random.Generator) -> Floats:
+def drawn_again(values: Floats, draw: np.random.Generator) -> Floats:
+    """Return values (runs, arms) with runs, and arms, drawn again."""
     runs, arms = (draw.integers(0, size, size) for size in values.shape)
     return values[np.ix_(runs, arms)]
 
@@ -88,6 +89,7 @@ def _joined(strata: Sequence[Floats]) -> Floats:
     return np.concatenate([values.ravel() for values in strata])
 
 
-def _with_ends(value: float, found: Floats) -> Interval:
+def with_ends(value: float, found: Floats) -> Interval:
+    """Return a value with the ends of its 95 % interval, from what resampling found (resamples,)."""
     low, high = np.quantile(found, [0.5 - LEVEL / 2, 0.5 + LEVEL / 2])
     return value, float(low), float(high)

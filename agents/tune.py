@@ -67,7 +67,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Try some plans, print the best one's options, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.tune", description=__doc__)
     parser.add_argument("config", type=Path, help="TOML file to start from")
-    parser.add_argument("--storage", type=Path, required=True, help="journal file; processes and machines that share it share the search")
+    parser.add_argument("--storage", type=Path, required=True, help="journal file; who shares it shares the search")
     parser.add_argument("--trials", type=int, default=20, help="for this process; 20 by default")
     parser.add_argument("--actions", type=int, default=4_000_000, help="in each trial; 4 million by default")
     asked = parser.parse_args(arguments)

@@ -160,7 +160,9 @@ def test_an_artefact_reloads_to_the_same_scores(algorithm: str, tmp_path: Path) 
     assert loaded.plan == made.plan
     assert loaded.run == made.run
     arm = Arm.load("thesis")
-    scores = [measure(roll_out(which.agent(), TASKS["slew"], arm, SETS["randomised"], 2), TASKS["slew"]) for which in (made, loaded)]
+    scores = [
+        measure(roll_out(which.agent(), TASKS["slew"], arm, SETS["randomised"], 2), TASKS["slew"]) for which in (made, loaded)
+    ]
     for name in scores[0]:
         assert np.array_equal(scores[0][name], scores[1][name])
 
@@ -246,7 +248,9 @@ def test_a_checkpoint_of_another_plan_is_refused(tmp_path: Path, monkeypatch: py
 
 def test_the_command_trains_what_is_not_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     config = tmp_path / "tiny.toml"
-    config.write_text('actions = 20\nat_once = 2\n[network]\nlayers = [4]\n[learning]\nbatch_size = 20\n[interface]\nrepeat = 100\n')
+    config.write_text(
+        "actions = 20\nat_once = 2\n[network]\nlayers = [4]\n[learning]\nbatch_size = 20\n[interface]\nrepeat = 100\n"
+    )
     command = [str(config), "--seeds", "0", "--save", str(tmp_path / "made"), "--tensorboard", str(tmp_path / "board")]
     assert main(command) == 0
     assert main(command) == 0
