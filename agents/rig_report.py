@@ -9,13 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from agents.goals import GOALS, cell_of
-from agents.statistics import Interval, drawn_again, with_ends
+from agents.statistics import RESAMPLES, Interval, drawn_again, with_ends
 
 Floats = NDArray[np.float64]
 
 #: Least values that count in a logarithm, far below what sensors show: [s], [deg], [V].
 LEAST = {"settling_time": 0.005, "steady_error": 1e-3, "residual_strain": 1e-4}
-RESAMPLES = 2000
 COLUMNS = (("settling_time", "settling [s]", 2), ("steady_error", "error [°]", 3), ("residual_strain", "strain [V]", 4))
 
 
@@ -32,8 +31,8 @@ def less_by(values: Mapping[str, Floats], reference: Mapping[str, Floats], seed:
     """
     own, other = cost(values), cost(reference)
     draw = np.random.default_rng(seed)
-    found = [drawn_again(own, draw).mean() - drawn_again(other, draw).mean() for _ in range(RESAMPLES)]
-    value, low, high = with_ends(float(own.mean() - other.mean()), np.array(found))
+    found = drawn_again(own, draw, RESAMPLES).mean(axis=1) - drawn_again(other, draw, RESAMPLES).mean(axis=1)
+    value, low, high = with_ends(float(own.mean() - other.mean()), found)
     return 1.0 - float(np.exp(value)), 1.0 - float(np.exp(high)), 1.0 - float(np.exp(low))
 
 

@@ -17,6 +17,9 @@ Interval = tuple[float, float, float]
 
 RESAMPLES = 2000
 LEVEL = 0.95
+#: Resamples are drawn so many at once, for speed within little memory.
+AT_ONCE = 200
+BATCHES = range(RESAMPLES // AT_ONCE)
 
 
 def mean_interval(values: Floats, seed: int = 0) -> Interval:
@@ -30,15 +33,16 @@ def paired_difference(values: Floats, reference: Floats, seed: int = 0) -> Inter
     return mean_interval(values - reference, seed)
 
 
-def interquartile_mean(values: Floats) -> float:
-    """Return the mean of the middle half of values (any shape): a quarter is left out at each end."""
-    ordered = np.sort(values, axis=None)
-    cut = len(ordered) // 4
-    return float(ordered[cut : len(ordered) - cut].mean())
+def interquartile_mean(values: Floats) -> Floats:
+    """Return the mean of the middle half of values (…, values): a quarter is left out at each end."""
+    ordered = np.sort(values, axis=-1)
+    cut = ordered.shape[-1] // 4
+    found: Floats = ordered[..., cut : ordered.shape[-1] - cut].mean(axis=-1)
+    return found
 
 
 def stratified_interval(
-    strata: Sequence[Floats], statistic: Callable[[Floats], float] = interquartile_mean, seed: int = 0
+    strata: Sequence[Floats], statistic: Callable[[Floats], Floats] = interquartile_mean, seed: int = 0
 ) -> Interval:
     """Return a statistic of all values and the ends of its 95 % interval, runs and arms drawn again within each stratum.
 
@@ -47,12 +51,12 @@ def stratified_interval(
 
     Args:
         strata: values (runs, arms) of each stratum, such as a task or set; how many there are may differ.
-        statistic: of values of any shape.
+        statistic: of values (…, values), along the last axis.
         seed: of the draws.
     """
     draw = np.random.default_rng(seed)
-    found = [statistic(_joined([drawn_again(values, draw) for values in strata])) for _ in range(RESAMPLES)]
-    return with_ends(statistic(_joined(strata)), np.array(found))
+    found = [statistic(np.concatenate([drawn_again(values, draw, AT_ONCE) for values in strata], axis=1)) for _ in BATCHES]
+    return with_ends(float(statistic(np.concatenate([values.ravel() for values in strata]))), np.concatenate(found))
 
 
 def improvement(values: Floats, reference: Floats, seed: int = 0) -> Interval:
@@ -63,30 +67,17 @@ def improvement(values: Floats, reference: Floats, seed: int = 0) -> Interval:
         reference: (runs, arms), of other runs on the same arms; a controller is one run.
         seed: of the draws, in which both sides draw the same arms.
     """
-    better = np.array([_better(values, other) for other in reference])
+    better = np.array([(values < other) + 0.5 * (values == other) for other in reference])
     draw = np.random.default_rng(seed)
-    found = []
-    for _ in range(RESAMPLES):
-        arms = draw.integers(0, better.shape[2], better.shape[2])
-        others, runs = (draw.integers(0, size, size) for size in better.shape[:2])
-        found.append(better[np.ix_(others, runs, arms)].mean())
+    others, runs, arms = (draw.integers(0, size, (RESAMPLES, size)) for size in better.shape)
+    found = [better[np.ix_(*chosen)].mean() for chosen in zip(others, runs, arms, strict=True)]
     return with_ends(float(better.mean()), np.array(found))
 
 
-def _better(values: Floats, other: Floats) -> Floats:
-    """Return 1 where values (runs, arms) are less than other (arms,), ½ where they are the same, else 0."""
-    found: Floats = (values < other) + 0.5 * (values == other)
-    return found
-
-
-def drawn_again(values: Floats, draw: np.random.Generator) -> Floats:
-    """Return values (runs, arms) with runs, and arms, drawn again."""
-    runs, arms = (draw.integers(0, size, size) for size in values.shape)
-    return values[np.ix_(runs, arms)]
-
-
-def _joined(strata: Sequence[Floats]) -> Floats:
-    return np.concatenate([values.ravel() for values in strata])
+def drawn_again(values: Floats, draw: np.random.Generator, times: int) -> Floats:
+    """Return values (runs, arms) with runs, and arms, drawn again (times, runs · arms)."""
+    runs, arms = (draw.integers(0, size, (times, size)) for size in values.shape)
+    return values[runs[:, :, None], arms[:, None, :]].reshape(times, -1)
 
 
 def with_ends(value: float, found: Floats) -> Interval:

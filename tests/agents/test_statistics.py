@@ -40,7 +40,7 @@ def test_more_arms_do_not_stand_in_for_more_runs() -> None:
 
 def test_strata_keep_their_share() -> None:
     low, high = np.zeros((3, 10)), np.ones((3, 10))
-    value, least, most = stratified_interval([low, high], lambda values: float(values.mean()))
+    value, least, most = stratified_interval([low, high], lambda values: values.mean(axis=-1))
     assert value == least == most == 0.5
 
 
