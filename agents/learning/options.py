@@ -45,6 +45,7 @@ class InterfaceOptions:
     estimate: bool = option(True, "also show a Kalman filter's angle, bending, speeds and friction, and the payload estimate")
     base: str = option("none", "classical controller to whose command the action is added", allowed=("none", *CONTROLLERS))
     authority: float = option(1.0, "command at action 1, as a share of the drive's limit", 0.001, 2.0)
+    kick: float = option(0.0, "share of the believed static friction added in the direction of the action", 0.0, 2.0)
     repeat: int = option(2, "samples of 5 ms for which an action is held", 1, 100)
     privileged: bool = option(True, "PPO's critic alone also sees the true state and the drawn constants, in training only")
 
@@ -72,7 +73,8 @@ class NetworkOptions:
 
     layers: tuple[int, ...] = option((64, 64), "units in each layer", 1, 4096)
     activation: str = option("tanh", "between layers", allowed=("tanh", "relu", "elu"))
-    log_std: float = option(-1.5, "logarithm of the actions' standard deviation when PPO starts", -20.0, 5.0)
+    log_std: float = option(-1.5, "PPO: logarithm of the actions' standard deviation at the start", -20.0, 5.0)
+    last_log_std: float = option(-4.0, "PPO: the same at the end; linear between, and not learned", -20.0, 5.0)
     own_spread: bool = option(False, "PPO: the actions' standard deviation depends on the state; else it is one for all")
     memory: int = option(64, "units of the recurrent layer of recurrent_ppo", 1, 4096)
 

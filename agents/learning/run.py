@@ -15,7 +15,7 @@ from stable_baselines3.common.logger import configure
 from agents.learning.artefact import Artefact, acting_weights
 from agents.learning.checkpoint import read_checkpoint, restore, restore_randomness, write_checkpoint
 from agents.learning.episodes import EpisodeVecEnv
-from agents.learning.models import make_model
+from agents.learning.models import ON_POLICY, make_model
 from agents.learning.options import Plan
 from flexarm_env import Arm, InputError, __version__
 from flexarm_env.cli.outputs import commit
@@ -43,7 +43,15 @@ class Watch(BaseCallback):
         return True
 
     def _on_rollout_start(self) -> None:
+        self.calm()
         self.look()
+
+    def calm(self) -> None:
+        """Set how far PPO's actions stray: less and less, so that at last what is learned is what is evaluated."""
+        network, share = self.plan.network, min(self.num_timesteps / self.plan.actions, 1.0)
+        spread = network.log_std + share * (network.last_log_std - network.log_std)
+        if self.plan.algorithm in ON_POLICY and not network.own_spread:
+            self.model.policy.log_std.requires_grad_(False).fill_(spread)
 
     def look(self) -> None:
         """Note how the last episodes went, and keep the state where it is time to."""
