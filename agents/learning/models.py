@@ -73,7 +73,7 @@ def policy_arguments(plan: Plan, visible: int) -> dict[str, Any]:
     if plan.algorithm in ON_POLICY:
         arguments["log_std_init"] = network.log_std
     if plan.algorithm == "ppo":
-        arguments |= {"visible": visible, "own_spread": network.own_spread}
+        arguments |= {"visible": visible, "own_spread": network.spread == "own"}
     if plan.algorithm == "recurrent_ppo":
         arguments["lstm_hidden_size"] = network.memory
     return arguments

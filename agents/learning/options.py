@@ -74,8 +74,12 @@ class NetworkOptions:
     layers: tuple[int, ...] = option((64, 64), "units in each layer", 1, 4096)
     activation: str = option("tanh", "between layers", allowed=("tanh", "relu", "elu"))
     log_std: float = option(-1.5, "PPO: logarithm of the actions' standard deviation at the start", -20.0, 5.0)
-    last_log_std: float = option(-4.0, "PPO: the same at the end; linear between, and not learned", -20.0, 5.0)
-    own_spread: bool = option(False, "PPO: the actions' standard deviation depends on the state; else it is one for all")
+    spread: str = option(
+        "learned",
+        "PPO: how that deviation goes on: learned, one for all states; own, learned for each state; falling, to last_log_std",
+        allowed=("learned", "own", "falling"),
+    )
+    last_log_std: float = option(-4.0, "PPO: its logarithm at the end where it is falling, evenly", -20.0, 5.0)
     memory: int = option(64, "units of the recurrent layer of recurrent_ppo", 1, 4096)
 
 

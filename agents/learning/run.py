@@ -47,10 +47,10 @@ class Watch(BaseCallback):
         self.look()
 
     def calm(self) -> None:
-        """Set how far PPO's actions stray: less and less, so that at last what is learned is what is evaluated."""
+        """Set how far PPO's actions stray where that is to fall, so that at last what is learned is what is evaluated."""
         network, share = self.plan.network, min(self.num_timesteps / self.plan.actions, 1.0)
         spread = network.log_std + share * (network.last_log_std - network.log_std)
-        if self.plan.algorithm in ON_POLICY and not network.own_spread:
+        if self.plan.algorithm in ON_POLICY and network.spread == "falling":
             self.model.policy.log_std.requires_grad_(False).fill_(spread)
 
     def look(self) -> None:

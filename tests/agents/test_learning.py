@@ -257,3 +257,20 @@ def test_the_command_trains_what_is_not_there(tmp_path: Path, capsys: pytest.Cap
     assert "is there already" in capsys.readouterr().out
     assert [path.name for path in (tmp_path / "made").iterdir()] == ["tiny-0.safetensors"]
     assert any((tmp_path / "board").rglob("events.*"))
+
+
+def test_actions_that_are_to_stray_less_do() -> None:
+    network = {"layers": [8], "spread": "falling", "log_std": -1.0, "last_log_std": -3.0}
+    made = train(small(network=network), 0, None, silent)
+    assert made.weights["log_std"].item() == pytest.approx(-2.0)  # set at the start of the second of two batches
+    assert train(small(network=network | {"spread": "own"}), 0, None, silent).weights["spread_net.weight"].shape == (1, 8)
+
+
+def test_a_kick_is_what_static_friction_holds() -> None:
+    arm = Arm.load("thesis")
+    interface = PolicyInterface(InterfaceOptions(authority=0.1, kick=1.0), arm, 1.0 / RATE)
+    interface.start(3)
+    interface.see(np.zeros((3, 5)))
+    shares = interface.send(np.array([[0.05], [0.1], [-1.0]]))[:, 0]
+    whole = (0.282 + 0.076045) / (1.5 * 0.33) / 5.0
+    assert shares == pytest.approx([0.005 + whole / 2, 0.01 + whole, -0.1 - whole], rel=1e-6)
