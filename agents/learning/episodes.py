@@ -50,6 +50,7 @@ class EpisodeVecEnv(VecEnv):
         self.interface = PolicyInterface(plan.interface, arm, 1.0 / RATE)
         self.reward = TrainingReward(plan.reward, self.envs)
         self.repeat, self.steps = plan.interface.repeat, actions_each(TASKS[plan.task], plan.interface.repeat)
+        self.actions_in_all = plan.actions
         self.privileged = plan.interface.privileged and plan.algorithm == "ppo"
         self.first_seed, self.next_episode = seed * SEEDS_EACH, 0
         #: Of the episodes that ended last, over all arms; None before there are any.
@@ -62,11 +63,12 @@ class EpisodeVecEnv(VecEnv):
         """Start the next episode of all arms; return what policy and critic see (arms, width)."""
         count, batch = self.num_envs, self.envs.batch
         first = self.first_seed + self.next_episode * count % SEEDS_EACH
+        share = min(self.next_episode * count * self.steps / self.actions_in_all, 1.0)
         self.next_episode += 1
         observation, _ = self.envs.reset(seed=first % FIRST_SEED)
         self.interface.start(count)
         self.interface.see(observation)
-        self.reward.start()
+        self.reward.start(share)
         self.draws = np.array([batch.draws_of(i) for i in range(count)]).reshape(count, -1)
         self.returns, self.step_number = np.zeros(count), 0
         self.tip = batch.info()["tip_deflection"]

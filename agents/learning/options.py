@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import tomllib
 from collections.abc import Mapping
@@ -61,6 +62,7 @@ class RewardOptions:
     tip_scale: float = option(0.2, "error of the tip [deg] below which less is hardly worth anything", 1e-4, 100.0)
     strain_scale: float = option(0.01, "vibration at the base gage [V] below which less is hardly worth anything", 1e-5, 10.0)
     vibration: float = option(0.5, "weight of the vibration; the tip's error has 1", 0.0, 100.0)
+    rise: float = option(1.0, "factor by which that weight has grown at the end; linear between", 0.0, 100.0)
     near: float = option(0.0, "vibration costs only near the target: error [deg] at which it counts 1/e; 0: everywhere", 0.0, 1e3)
     distance: float = option(0.0, "weight of the tip's error in rad, on a linear scale", 0.0, 100.0)
     effort: float = option(0.02, "weight of (command / limit)²", 0.0, 100.0)
@@ -202,6 +204,6 @@ def option_table() -> str:
         for part in fields(section) if nested else [entry]:
             prefix, owner = (f"{entry.name}.", section) if nested else ("", Plan())
             default = getattr(owner, part.name)
-            shown = list(default) if isinstance(default, tuple) else default
-            lines.append(f"| `{prefix}{part.name}` | `{shown}` | {part.metadata['meaning']} |".replace("`True`", "`true`"))
+            shown = json.dumps(default) if isinstance(default, bool | tuple) else default
+            lines.append(f"| `{prefix}{part.name}` | `{shown}` | {part.metadata['meaning']} |")
     return "\n".join(lines) + "\n"

@@ -32,8 +32,10 @@ class TrainingReward:
         self.gage = signals.index("strain_base") if "strain_base" in signals else None
         self.rate = envs.setup.rate
 
-    def start(self) -> None:
-        """Begin an episode of every arm."""
+    def start(self, share: float) -> None:
+        """Begin an episode of every arm, when that share of the training is over."""
+        # at full weight from the start, a policy learns to stay away from where vibration costs
+        self.vibration = self.options.vibration * (1.0 + share * (self.options.rise - 1.0))
         self.strain = self._strain()
         self.share = np.zeros(self.envs.num_envs)
 
@@ -46,7 +48,7 @@ class TrainingReward:
         far = _share(np.rad2deg(error), options.tip_scale, WHOLE_ERROR)
         shaking = _share(np.hypot(self.strain, swing), options.strain_scale, WHOLE_STRAIN)
         near = np.exp(-np.rad2deg(error) / options.near) if options.near > 0.0 else 1.0
-        found: Floats = -far - options.distance * error - options.vibration * near * shaking
+        found: Floats = -far - options.distance * error - self.vibration * near * shaking
         return found
 
     def command(self, share: Floats) -> Floats:

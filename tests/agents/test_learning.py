@@ -274,3 +274,18 @@ def test_a_kick_is_what_static_friction_holds() -> None:
     shares = interface.send(np.array([[0.05], [0.1], [-1.0]]))[:, 0]
     whole = (0.282 + 0.076045) / (1.5 * 0.33) / 5.0
     assert shares == pytest.approx([0.005 + whole / 2, 0.01 + whole, -0.1 - whole], rel=1e-6)
+
+
+def test_the_documentation_lists_every_option() -> None:
+    document = (Path(__file__).parents[2] / "docs" / "policies.md").read_text(encoding="utf-8")
+    written = document.split("<!-- options -->\n")[1].split("<!-- /options -->")[0]
+    assert written == option_table(), "docs/policies.md has other options than: python -m agents.train --options"
+
+
+def test_vibration_weighs_more_as_training_goes_on() -> None:
+    env = EpisodeVecEnv(small(actions=80, reward={"vibration": 0.5, "rise": 3.0}), Arm.load("thesis"), 0)
+    weights = []
+    for _ in range(3):
+        env.reset()
+        weights.append(env.reward.vibration)
+    assert weights == [0.5, 0.75, 1.0]  # 20 actions in each batch of episodes
