@@ -49,12 +49,12 @@ NOMINAL = "thesis-fem"
 CLASSICAL = ("pd", "vibration_dual", "shaped_zvd", "lqg")
 
 
-def correct(case: str, folder: Path) -> None:
+def correct(case: str, folder: Path, jobs: int) -> None:
     """Record a machine three times, diagnose the nominal arm against it, and keep the corrected arm and the verdict."""
     settings, effect = CASES[case]
     with tempfile.TemporaryDirectory() as place:
         write_case(place, dict(settings), 0)
-        found = diagnose(Arm.load(NOMINAL), Recording.read_all(place))
+        found = diagnose(Arm.load(NOMINAL), Recording.read_all(place), jobs=jobs)
     folder.mkdir(parents=True, exist_ok=True)
     about = {"hidden": effect, "settings": settings, "verdict": found.verdict, "effects": list(found.effects)}
     about |= {"error": dict(found.error), "seconds": round(found.seconds, 1), "version": __version__, "commit": commit()}
@@ -75,14 +75,14 @@ def wanted() -> list[tuple[str, str | None]]:
     return [("nominal", None), ("randomised", None), *(("corrected", case) for case in CASES)]
 
 
-def make(folder: Path, say: Callable[[str], None]) -> None:
+def make(folder: Path, jobs: int, say: Callable[[str], None]) -> None:
     """Diagnose and train what is not there yet."""
     from agents.train import one_run
 
     for case in CASES:
         if not (folder / "arms" / f"{case}.toml").is_file():
             say(f"diagnosing {case}")
-            correct(case, folder / "arms")
+            correct(case, folder / "arms", jobs)
     most = max(plan_of(kind, case, folder)[1].seeds for kind, case in wanted())
     # seed by seed, so that a run that is stopped leaves as many of each kind
     for seed in range(most):
@@ -120,6 +120,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m agents.sim_to_rig", description=__doc__.partition("\n")[0])
     parser.add_argument("--make", action="store_true", help="first diagnose and train what is not there; stopped, it goes on")
     parser.add_argument("--count", type=int, default=20, help="episodes on each machine; 20 by default")
+    parser.add_argument("--jobs", type=int, default=2, help="processes of a diagnosis; 2 by default")
     parser.add_argument("--save", type=Path, default=FOLDER, help="folder of arms, policies and results; results/sim_to_rig")
     asked = parser.parse_args(arguments)
     began = time.perf_counter()
@@ -128,10 +129,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"\r{time.perf_counter() - began:4.0f} s  {text:<70}", end="", file=sys.stderr, flush=True)
 
     try:
-        if asked.count < 1:
-            raise InputError(f"--count {asked.count}; give a whole number from 1 up")
+        if asked.count < 1 or asked.jobs < 1:
+            raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
         if asked.make:
-            make(asked.save, say)
+            make(asked.save, asked.jobs, say)
         lacking = [case for case in CASES if not all(policies_of(asked.save, kind, case) for kind in PLANS)]
         if lacking:
             raise InputError(f"no policies for {', '.join(lacking)} in {asked.save}; add --make to diagnose and train")
