@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
+from flexarm_env.identify.least_squares import Reach
 
 Floats = NDArray[np.float64]
 
 #: A fit sees an unbounded prior as this many typical sizes wide, so that a direction without information stays put.
 WIDEST = 30.0
-BASE_STEP, EFFECT_STEP = 1e-3, 1e-2
+#: Differences are taken over no less than this, of constants and of effects; nor over more than this share of a prior or a size.
+BASE_STEP, EFFECT_STEP, WIDEST_STEP = 1e-3, 1e-2, 0.3
 #: What splits friction between motor and hub, which are one body unless the gears give way.
 SHARES = ("drive.motor_coulomb_share", "drive.motor_stiction_share")
 SENSOR_SPREAD = {"arm_angle": 0.0, "motor_speed": 0.03, "strain_mid": 0.15, "strain_base": 0.15, "tip_deflection": 0.15}
@@ -51,6 +53,10 @@ class Coordinate:
         if not self.scale:
             return BASE_STEP if self.is_constant else EFFECT_STEP
         return EFFECT_STEP * max(abs(self.value(x)) / self.scale, 0.3)
+
+    def widest_step(self, x: float) -> float:
+        """Return the step of x beyond which the value is hardly to be believed, or an effect another than it was."""
+        return WIDEST_STEP * self.prior if self.is_constant else WIDEST_STEP * self.step(x) / EFFECT_STEP
 
     def value(self, x: float) -> float:
         """Return the physical value at x, within the bounds."""
@@ -128,9 +134,11 @@ def place_values(arm: Arm, coordinates: Sequence[Coordinate], x: Floats) -> Arm:
     return arm.with_values({c.path: c.value(float(v)) for c, v in zip(coordinates, x, strict=True)})
 
 
-def steps_at(coordinates: Sequence[Coordinate], x: Floats) -> Floats:
-    """Return the steps over which differences are taken at x."""
-    return np.array([c.step(float(v)) for c, v in zip(coordinates, x, strict=True)])
+def reach_at(coordinates: Sequence[Coordinate], x: Floats) -> Reach:
+    """Return how far differences go at x, at the widest to begin with."""
+    pairs = list(zip(coordinates, (float(v) for v in x), strict=True))
+    most = np.array([c.widest_step(v) for c, v in pairs])
+    return Reach(np.array([c.step(v) for c, v in pairs]), most, most)
 
 
 def position(arm: Arm, coordinates: Sequence[Coordinate]) -> Floats:

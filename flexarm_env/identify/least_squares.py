@@ -1,7 +1,9 @@
-"""Levenberg–Marquardt on whitened residuals with a Gaussian prior, for models whose Jacobian is dear.
+"""Levenberg–Marquardt on whitened residuals with a Gaussian prior, for replays that stick and slip.
 
-SciPy's least_squares factors the whole Jacobian at each trial; here it is 60,000 rows by 15 columns of replays, so its normal
-equations are formed once per iteration, and columns that hardly change are taken over from an earlier fit.
+A replay's error is rough in its constants: a hub that stops a moment later rests elsewhere. A derivative says nothing there; a
+difference over a step as wide as the model is off does (statistical linearisation, as in ensemble Gauss–Newton: Chada, Chen and
+Sanz-Alonso, Found. Data Sci. 3 (2021) 331), and steps shrink as the error falls. SciPy's least_squares takes derivatives over
+steps of a fixed relative size, and cannot take columns over from an earlier fit.
 """
 
 from __future__ import annotations
@@ -20,27 +22,45 @@ LARGEST_STEP = 3.0
 STEPS, WORTHWHILE, TRIALS = 4, 0.01, 5
 #: Damping below which a step is that of Gauss and Newton.
 LEAST_HELPFUL = 1e-3
+#: Differences that shrank by less than this factor would give the same Jacobian once more.
+SHRINKS = 0.7
+
+
+@dataclass(frozen=True)
+class Reach:
+    """How far x is moved for differences (x,): at least, at most, and now."""
+
+    least: Floats
+    most: Floats
+    now: Floats
+
+    def adapted(self, residual: Floats, j: Floats, grow: bool) -> Reach:
+        """Return the reach at which each x changes the residual by as much as is left of it; no larger unless it may grow."""
+        sizes = np.linalg.norm(residual) / np.maximum(np.linalg.norm(j, axis=0), 1e-300)
+        sizes = np.clip(sizes, self.least, self.most)
+        return Reach(self.least, self.most, sizes if grow else np.minimum(sizes, self.now))
 
 
 @dataclass
 class Solution:
-    """Where a fit ended: x, its cost (residual and prior), the residual, its Jacobian there (rows, x)."""
+    """Where a fit ended: x, its cost (residual and prior), the residual, its Jacobian there (rows, x), and its reach."""
 
     x: Floats
     cost: float
     residual: Floats
     jacobian: Floats
+    reach: Reach
 
 
-def jacobian(residual: Residual, x: Floats, at_x: Floats, steps: Floats, columns: range | None = None) -> Floats:
-    """Return forward differences (rows, columns) of the residual over steps (x,)."""
-    chosen = range(len(x)) if columns is None else columns
-    out = np.empty((len(at_x), len(chosen)))
-    for i, k in enumerate(chosen):
-        moved = x.copy()
-        moved[k] += steps[k]
-        out[:, i] = (residual(moved) - at_x) / steps[k]
-    return np.nan_to_num(out)
+def jacobian(residual: Residual, x: Floats, steps: Floats, first: int = 0) -> Floats:
+    """Return central differences (rows, steps) of the residual over steps to either side, of x from the first on."""
+    columns: list[Floats] = []
+    for k, width in enumerate(steps, start=first):
+        above, below = x.copy(), x.copy()
+        above[k] += width
+        below[k] -= width
+        columns.append((residual(above) - residual(below)) / (2.0 * width))
+    return np.nan_to_num(np.stack(columns, axis=1))
 
 
 def cost_of(residual: Floats, x: Floats, prior: Floats) -> float:
@@ -53,10 +73,10 @@ def minimise(
     residual: Residual,
     x: Floats,
     prior: Floats,
-    steps: Floats,
+    reach: Reach,
     iterations: int,
     frozen: Floats | None = None,
-    tolerance: float = 1e-4,
+    tolerance: float = 1e-3,
 ) -> Solution:
     """Minimise |residual(x)|² + |x / prior|².
 
@@ -64,10 +84,10 @@ def minimise(
         residual: whitened residual (rows,).
         x: where to start.
         prior: standard deviation of each x around 0.
-        steps: for the differences, of each x.
+        reach: of the differences; the last of x, where there are frozen columns.
         iterations: at most so many Jacobians.
         frozen: Jacobian (rows, first columns) taken over from elsewhere and not computed again.
-        tolerance: relative decrease of the cost at which to stop.
+        tolerance: relative decrease of the cost at which to stop, unless smaller differences may help.
     """
     r = residual(x)
     cost = cost_of(r, x, prior)
@@ -77,7 +97,8 @@ def minimise(
     if frozen is not None:
         j[:, :known] = frozen
     for _ in range(iterations):
-        j[:, known:] = jacobian(residual, x, r, steps, range(known, len(x)))
+        if known < len(x):
+            j[:, known:] = jacobian(residual, x, reach.now, known)
         before = cost
         for number in range(STEPS):
             normal = j.T @ j + np.diag(prior**-2.0)
@@ -96,9 +117,12 @@ def minimise(
                 damping = max(10.0 * damping, LEAST_HELPFUL)
             if last - cost < WORTHWHILE * last:
                 break
-        if before - cost < tolerance * before:
+        stays = before - cost < tolerance * before
+        finer = reach.adapted(r, j[:, known:], grow=not stays)
+        if stays and np.all(finer.now > SHRINKS * reach.now):
             break
-    return Solution(x, cost, r, j)
+        reach = finer
+    return Solution(x, cost, r, j, reach)
 
 
 def _secant_correction(missed: Floats, step: Floats, weights: Floats) -> Floats:

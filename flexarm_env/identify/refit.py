@@ -16,7 +16,7 @@ from flexarm_env.identify.coordinates import (
     effect_coordinates,
     place_values,
     position,
-    steps_at,
+    reach_at,
 )
 from flexarm_env.identify.data import Data, everything, torque_scale
 from flexarm_env.identify.least_squares import Solution, covariance, jacobian, minimise
@@ -76,11 +76,12 @@ def refit(arm: Arm, nominal: Arm, data: Data, levels: Sequence[float] = LEVELS, 
     tolerances = [ON_THE_WAY] * (len(noises) - 1) + [AT_THE_END]
     coordinates = free_coordinates(arm, nominal, data)
     x = position(arm, coordinates)
+    reach = reach_at(coordinates, x)
     for noise, tolerance in zip(noises, tolerances, strict=True):
         problem = Problem(arm, data, coordinates, noise, np.ones((len(data.runs), len(data.signals))))
         problem.weigh(place_values(arm, coordinates, x), held)
-        solution = minimise(problem.residual, x, problem.prior, steps_at(coordinates, x), iterations, tolerance=tolerance)
-        x = solution.x
+        solution = minimise(problem.residual, x, problem.prior, reach, iterations, tolerance=tolerance)
+        x, reach = solution.x, solution.reach
     return Refit(place_values(arm, coordinates, x), coordinates, solution, problem)
 
 
@@ -89,7 +90,7 @@ def as_it_is(arm: Arm, data: Data) -> Refit:
     coordinates = free_coordinates(arm, arm, data)
     problem = Problem(arm, data, coordinates, 0.0, np.ones((len(data.runs), len(data.signals))))
     x = position(arm, coordinates)
-    return Refit(arm, coordinates, Solution(x, np.inf, np.zeros(0), np.zeros((0, len(x)))), problem)
+    return Refit(arm, coordinates, Solution(x, np.inf, np.zeros(0), np.zeros((0, len(x))), reach_at(coordinates, x)), problem)
 
 
 def best_refit(nominal: Arm, data: Data) -> Refit:
@@ -163,7 +164,7 @@ def at_solution(found: Refit) -> Refit:
     solution = replace(
         found.solution,
         residual=residual,
-        jacobian=jacobian(problem.residual, x, residual, steps_at(found.coordinates, x)),
+        jacobian=jacobian(problem.residual, x, found.solution.reach.now),
     )
     return replace(found, solution=solution)
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.coordinates import effect_coordinates, place_values, position, steps_at
+from flexarm_env.identify.coordinates import effect_coordinates, place_values, position, reach_at
 from flexarm_env.identify.data import Data, torque_scale
 from flexarm_env.identify.least_squares import jacobian, minimise
 from flexarm_env.identify.problem import Problem
@@ -69,7 +69,7 @@ def screening_base(found: Refit, data: Data) -> Base:
     problem.weigh(found.arm)
     x = position(found.arm, found.coordinates)
     residual = problem.residual(x)
-    slopes = jacobian(problem.residual, x, residual, steps_at(found.coordinates, x))
+    slopes = jacobian(problem.residual, x, found.solution.reach.now)
     prior = np.diag(1.0 / problem.prior)
     orthonormal = np.linalg.qr(np.vstack([slopes, prior]))[0][: len(residual)]
     return Base(problem, x, residual, slopes, orthonormal)
@@ -185,8 +185,8 @@ def attempt(base: Base, signature: Signature | None) -> Trial:
     problem = Problem(arm, base.problem.data, coordinates, base.problem.torque_noise, base.problem.sigma)
     prior = np.concatenate([base.problem.prior, [c.prior for c in added]])
     x = np.concatenate([base.x, position(arm, added)])
-    steps = steps_at(coordinates, x)
-    solution = minimise(problem.residual, x, prior, steps, ITERATIONS, frozen=base.jacobian, tolerance=1e-3)
+    reach = reach_at(added, x[len(base.x) :])
+    solution = minimise(problem.residual, x, prior, reach, ITERATIONS, frozen=base.jacobian)
     best = place_values(arm, coordinates, solution.x)
     held = Problem(best, base.problem.data, [], base.problem.torque_noise, base.problem.sigma, held_out=True)
     r = held.residual_of(best)
