@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -13,7 +15,7 @@ from agents.rig import Machine, drive
 from agents.rig_report import cost, less_by, verdict_of
 from agents.rollout import roll_out
 from agents.sets import SETS
-from agents.sim_to_rig import CASES, plan_of, wanted
+from agents.sim_to_rig import CASES, main, plan_of, wanted
 from flexarm_env import Arm
 from flexarm_env.controllers import make_controller
 from flexarm_env.effects import catalogue
@@ -71,3 +73,10 @@ def test_a_gain_that_only_one_run_of_three_shows_is_not_sure() -> None:
     assert low < 0.0 < value < high
     found = verdict_of({"policy, nominal": other, "policy, corrected": own})
     assert found["corrected_less_by"]["policy"]["nominal"]["low"] < 0.0
+
+
+def test_without_policies_the_command_says_what_to_do(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--save", str(tmp_path)]) == 2
+    error = capsys.readouterr().err
+    assert "--make" in error
+    assert error.count("\n") == 1
