@@ -58,6 +58,8 @@ def report_of(result: Mapping[str, Any]) -> str:
         f"The slew over 100° on a machine that hides something, {result['episodes']} episodes with other noise; interquartile",
         "means over episodes and training runs, 95 % bootstrap intervals in which both are drawn again. Less is better.",
     ]
+    if result["not_made"]:
+        lines += ["", f"Not made yet: {', '.join(result['not_made'])}; `python -m agents.sim_to_rig --make` goes on."]
     for case, found in result["cases"].items():
         diagnosis = result["diagnoses"][case]
         named = ", ".join(diagnosis["effects"]) or "none named"
