@@ -28,8 +28,6 @@ from flexarm_env.controllers import CONTROLLERS
 from flexarm_env.files import write_whole
 from flexarm_env.tasks import TASKS
 
-Job = tuple[str, str, str | list[Path]]
-
 
 def find_policies(folder: Path) -> dict[str, list[Path]]:
     """Return the stored runs of each configuration, by its name.
