@@ -42,7 +42,7 @@ policies: $(DEV) ## compare the stored policies with all controllers, here and o
 	$(BIN)/python -m agents.compare
 	$(BIN)/python -m agents.film --controllers vibration_dual results/policies/weights/ppo_slew-0.safetensors \
 		--env FlexArm/Slew-Random-v0 --save results/policies/dual-policy.gif
-	$(BIN)/python -m agents.sim_to_rig
+
 
 train: $(DEV) ## train again what is not in results/: delete policies first; hours
 	$(BIN)/python -m agents.train configs/agents/*.toml

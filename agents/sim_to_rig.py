@@ -22,7 +22,8 @@ import numpy as np
 
 from agents.evaluate import RATE
 from agents.learning.artefact import Artefact
-from agents.learning.options import Plan, read_plan
+from agents.learning.options import Plan
+from agents.learning.plan_file import read_plan
 from agents.measures import MEASURES, measure
 from agents.rig import drive
 from agents.rig_report import report_of, verdict_of

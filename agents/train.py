@@ -7,7 +7,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from agents.learning.options import Plan, option_table, read_plan
+from agents.learning.options import Plan
+from agents.learning.plan_file import option_table, read_plan
 from flexarm_env.errors import InputError
 
 FOLDER = Path(__file__).resolve().parent.parent / "results" / "policies" / "weights"

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from agents.goals import GOALS
-from agents.learning.options import Plan, read_plan, read_table
+from agents.learning.options import Plan
+from agents.learning.plan_file import read_plan, read_table
 from agents.measures import measure
 from agents.rollout import roll_out
 from agents.sets import ArmSet

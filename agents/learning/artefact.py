@@ -19,7 +19,8 @@ from stable_baselines3.common.policies import BasePolicy
 from agents.learning.episodes import RATE
 from agents.learning.interface import PolicyInterface
 from agents.learning.models import TRAINING_ONLY, bare_policy
-from agents.learning.options import Plan, read_table
+from agents.learning.options import Plan
+from agents.learning.plan_file import read_table
 from flexarm_env.arm import Arm
 from flexarm_env.arm_file import arm_from_table, arm_text
 from flexarm_env.effects import catalogue

@@ -12,7 +12,7 @@ pytest.importorskip("stable_baselines3")
 
 from agents import compare as command
 from agents.goals import GOALS, THESIS, against_classical, against_thesis, cell_of, verdicts
-from agents.learning.options import read_table
+from agents.learning.plan_file import read_table
 from agents.learning.run import train
 from agents.sets import SETS
 from flexarm_env.controllers import CONTROLLERS

@@ -18,7 +18,8 @@ from agents.learning.artefact import Artefact
 from agents.learning.episodes import RATE, EpisodeVecEnv
 from agents.learning.interface import PolicyInterface
 from agents.learning.models import make_model
-from agents.learning.options import ALGORITHMS, InterfaceOptions, Plan, option_table, read_plan, read_table
+from agents.learning.options import ALGORITHMS, InterfaceOptions, Plan
+from agents.learning.plan_file import option_table, read_plan, read_table
 from agents.learning.run import train
 from agents.measures import measure
 from agents.rollout import roll_out

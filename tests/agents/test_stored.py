@@ -12,7 +12,7 @@ pytest.importorskip("stable_baselines3")
 from agents.compare import evaluate_policies, find_policies
 from agents.goals import GOALS, cell_of
 from agents.learning.artefact import Artefact
-from agents.learning.options import read_plan
+from agents.learning.plan_file import read_plan
 
 PROJECT = Path(__file__).parents[2]
 RESULTS = PROJECT / "results"

@@ -9,7 +9,8 @@ import pytest
 pytest.importorskip("stable_baselines3")
 pytest.importorskip("optuna")
 
-from agents.learning.options import Plan, read_table
+from agents.learning.options import Plan
+from agents.learning.plan_file import read_table
 from agents.tune import JUDGES_COUNT, JUDGES_SEED, RANGES, changed, main
 
 TINY = "actions = 20\nat_once = 2\n[network]\nlayers = [4]\n[learning]\nbatch_size = 20\n[interface]\nrepeat = 100\n"
