@@ -38,11 +38,10 @@ baselines: $(DEV) ## evaluate all controllers and film two of them, into results
 	$(BIN)/python -m agents.evaluate
 	$(BIN)/python -m agents.film
 
-policies: $(DEV) ## compare the stored policies with all controllers, here and on the machine, into results/
+policies: $(DEV) ## compare the stored policies with all controllers, into results/policies/
 	$(BIN)/python -m agents.compare
 	$(BIN)/python -m agents.film --controllers vibration_dual results/policies/weights/ppo_slew-0.safetensors \
 		--env FlexArm/Slew-Random-v0 --save results/policies/dual-policy.gif
-
 
 train: $(DEV) ## train again what is not in results/: delete policies first; hours
 	$(BIN)/python -m agents.train configs/agents/*.toml
