@@ -12,7 +12,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 export MPLBACKEND ?= Agg
 
-.PHONY: help demo thesis test lint bench baselines results docs clean clean-cache
+.PHONY: help demo thesis test lint bench baselines policies train results docs clean clean-cache
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 22
@@ -38,7 +38,16 @@ baselines: $(DEV) ## evaluate all controllers and film two of them, into results
 	$(BIN)/python -m agents.evaluate
 	$(BIN)/python -m agents.film
 
-results: demo thesis baselines bench ## make again what results/ holds
+policies: $(DEV) ## compare the stored policies with all controllers, into results/policies/
+	$(BIN)/python -m agents.compare
+	$(BIN)/python -m agents.film --controllers vibration_dual results/policies/weights/ppo_slew-0.safetensors \
+		--env FlexArm/Slew-Random-v0 --save results/policies/dual-policy.gif
+
+train: $(DEV) ## train again what is not in results/: delete policies first; hours
+	$(BIN)/python -m agents.train configs/agents/*.toml
+	$(BIN)/python -m agents.sim_to_rig --make
+
+results: demo thesis baselines policies bench ## make again what results/ holds
 
 docs: $(DEV) ## run the snippets in the documentation
 	$(BIN)/python -m pytest -m "slow or not slow" tests/test_docs.py

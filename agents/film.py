@@ -1,4 +1,4 @@
-"""Two controllers side by side on one task, as a GIF: python -m agents.film writes results/baselines/pd-dual.gif."""
+"""Two controllers or policies side by side on one task, as a GIF: python -m agents.film writes results/baselines/pd-dual.gif."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ import numpy as np
 from PIL import Image
 
 from agents.evaluate import FOLDER
+from agents.rollout import Agent
 from agents.sets import FIRST_SEED
 from flexarm_env import Arm
-from flexarm_env.controllers import make_controller
+from flexarm_env.controllers import CONTROLLERS, make_controller
 from flexarm_env.env import FlexArmEnv
 
 #: Pictures per second, and the width of one of the two pictures.
@@ -21,14 +22,14 @@ COLOURS = 48
 
 
 def pictures(name: str, env_id: str, arm: str) -> list[Image.Image]:
-    """Return what a controller does in one episode, one picture every 1 / RATE seconds."""
+    """Return what a controller, or the policy in a file, does in one episode, one picture every 1 / RATE seconds."""
     env = gym.make(env_id, arm=arm, physical=True, render_mode="rgb_array")
     bare = env.unwrapped
     assert isinstance(bare, FlexArmEnv)
     interval = 1.0 / bare.setup.rate
-    controller = make_controller(name, Arm.load(arm), interval)
-    controller.reset()
-    bare.title = f"{bare.setup.task.name}: {name.replace('_', ' ')}"
+    agent = driver(name, arm, interval)
+    agent.reset()
+    bare.title = f"{bare.setup.task.name}: {Path(name).stem.replace('_', ' ')}"
     observation, _ = env.reset(seed=FIRST_SEED)
     every = round(1.0 / (RATE * interval))
     found, over, sample = [], False, 0
@@ -36,10 +37,20 @@ def pictures(name: str, env_id: str, arm: str) -> list[Image.Image]:
         if sample % every == 0:
             frame = Image.fromarray(np.asarray(env.render()))
             found.append(frame.resize((WIDTH, WIDTH), Image.Resampling.LANCZOS))
-        observation, _, terminated, truncated, _ = env.step(controller.action(observation))
+        observation, _, terminated, truncated, _ = env.step(agent.action(observation))
         over, sample = terminated or truncated, sample + 1
     env.close()
     return found
+
+
+def driver(name: str, arm: str, interval: float) -> Agent:
+    """Return a controller by its name, or a policy by its file."""
+    if name in CONTROLLERS:
+        return make_controller(name, Arm.load(arm), interval)
+    # policies need torch, controllers do not
+    from agents.learning.artefact import Artefact
+
+    return Artefact.load(Path(name)).agent()
 
 
 def film(names: tuple[str, str], env_id: str, arm: str, path: Path) -> None:
@@ -60,9 +71,9 @@ def film(names: tuple[str, str], env_id: str, arm: str, path: Path) -> None:
 def main() -> None:
     """Make the film that README.md shows, or another."""
     parser = argparse.ArgumentParser(prog="python -m agents.film", description=__doc__)
-    parser.add_argument("--controllers", nargs=2, default=["pd", "vibration_dual"], metavar="NAME")
+    parser.add_argument("--controllers", nargs=2, default=["pd", "vibration_dual"], metavar="NAME", help="or files of policies")
     parser.add_argument("--env", default="FlexArm/Slew-v0", help="id of the environment")
-    parser.add_argument("--arm", default="thesis", help="name or file of the arm")
+    parser.add_argument("--arm", default="thesis", help="name or file of the arm; another than a policy's own is allowed")
     parser.add_argument("--save", type=Path, default=FOLDER / "pd-dual.gif")
     asked = parser.parse_args()
     film(tuple(asked.controllers), asked.env, asked.arm, asked.save)

@@ -24,7 +24,9 @@ class Agent(Protocol):
         """Return shares of the limit (arms, 1) for physical observations (arms, signals + 1)."""
 
 
-def roll_out(agent: Agent, task: Task, arm: Arm, arms: ArmSet, count: int, rate: float = 200.0) -> Trajectories:
+def roll_out(
+    agent: Agent, task: Task, arm: Arm, arms: ArmSet, count: int, rate: float = 200.0, first_seed: int = FIRST_SEED
+) -> Trajectories:
     """Return what happens to `count` arms of a set, the same ones whoever drives them.
 
     Args:
@@ -34,22 +36,26 @@ def roll_out(agent: Agent, task: Task, arm: Arm, arms: ArmSet, count: int, rate:
         arms: what differs from arm to arm.
         count: of arms.
         rate: control steps per second [Hz].
+        first_seed: of the first arm; the evaluation's by default.
     """
     envs = FlexArmVectorEnv(count, task, arm, control_rate=rate, physical=True, **arms.arguments(arm))
-    observations, _ = envs.reset(seed=FIRST_SEED)
+    observations, _ = envs.reset(seed=first_seed)
     agent.reset(count)
     batch, steps = envs.batch, envs.max_episode_steps
     length = arm.constants.get("beam", {}).get("length", 1.0)
     strain = list(arm.signals).index("strain_base") if "strain_base" in arm.signals else None
     tip, target, strains, commands = (np.zeros((steps, count)) for _ in range(4))
     failed = np.zeros(count, dtype=bool)
-    start = batch.info()["hub_angle"].copy()
+    seen = batch.info()
+    start = seen["hub_angle"]
     for k in range(steps):
+        # what was asked for in this sample: its end may be where the next target begins
+        target[k] = seen["target"]
         observations, _, terminated, _, _ = envs.step(agent.action(observations))
         failed |= terminated
         seen = batch.info()
         tip[k] = seen["hub_angle"] + seen["tip_deflection"] / length
-        target[k], commands[k] = seen["target"], seen["command"]
+        commands[k] = seen["command"]
         if strain is not None:
             strains[k] = batch.looks[:, strain]
     envs.close()

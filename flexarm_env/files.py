@@ -8,8 +8,8 @@ from pathlib import Path
 from flexarm_env.errors import InputError
 
 
-def write_whole(path: Path, text: str) -> None:
-    """Write a text file beside its place, then move it there.
+def write_whole(path: Path, content: str | bytes) -> None:
+    """Write a file, text as UTF-8, beside its place, then move it there.
 
     Raises:
         InputError: if the place cannot be written.
@@ -17,8 +17,8 @@ def write_whole(path: Path, text: str) -> None:
     draft = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
         try:
-            with draft.open("x", encoding="utf-8", newline="\n") as file:
-                file.write(text)
+            with draft.open("xb") as file:
+                file.write(content.encode() if isinstance(content, str) else content)
                 file.flush()
                 os.fsync(file.fileno())
             os.replace(draft, path)

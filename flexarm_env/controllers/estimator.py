@@ -80,6 +80,11 @@ class Estimator:
         self.state = product(self.transition, self.state) + command[:, None] * self.response
         self._sent = command
 
+    def amend(self, extra: Floats) -> None:
+        """Count in what was sent beyond the command that the state was moved on by, extra (count,) [A or V]."""
+        self.state = self.state + extra[:, None] * self.response
+        self._sent = self._sent + extra
+
     def reading(self, signal: str) -> Floats:
         """What a sensor would show, without noise and offset (count,)."""
         place = self.model.signals.index(signal)

@@ -250,9 +250,12 @@ class Batch:
 
     def arm_of(self, arm: int) -> Arm:
         """Return the arm as it was drawn for the present episode."""
+        return self.setup.variation.arm(self.setup.arm, self.draws_of(arm))
+
+    def draws_of(self, arm: int) -> list[float]:
+        """Return where in its range, from 0 up to 1, each value that varies was drawn for the present episode."""
         key = self._key(arm, "arm")
-        draws = [at.uniform(key, 0, i) for i in range(len(self.setup.variation.ranges))]
-        return self.setup.variation.arm(self.setup.arm, draws)
+        return [at.uniform(key, 0, i) for i in range(len(self.setup.variation.ranges))]
 
     def _key(self, arm: int, name: str) -> np.uint64:
         """Return the key of an arm's draws of a name in its present episode."""

@@ -1,0 +1,91 @@
+"""The comparison of policies and controllers, as Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from agents.goals import THESIS, against_classical, against_thesis
+from agents.report import COLUMNS
+
+#: Task and set of the goals.
+GOAL = ("slew", "randomised")
+
+
+def report_of(result: Mapping[str, Any]) -> str:
+    """Return the whole report: how it was made, the goals, one table for each task and set."""
+    lines = [
+        "# Policies",
+        "",
+        f"`{result['command']}`, version {result['version']}, commit {result['commit']}, seed {result['seed']}.",
+        f"Interquartile means over {result['arms']} arms that no training saw and, for policies, over training runs, with 95 %",
+        "bootstrap intervals in which runs and arms are drawn again. An arm that never settles counts with the whole stretch.",
+        "Less is better everywhere.",
+        "",
+        *_about(result["policies"]),
+        "",
+        *(f"- {name}: {value['meaning']} [{value['unit']}]" for name, value in result["measures"].items()),
+        "",
+        "## Goals",
+        "",
+        *_goals(result),
+    ]
+    for task, sets in result["tasks"].items():
+        for arms, found in sets.items():
+            lines += ["", f"## {task}, {arms}: {result['sets'][arms]}", "", *_rows(found["cells"], result["policies"])]
+    return "\n".join(lines) + "\n"
+
+
+def _about(policies: Mapping[str, Any]) -> list[str]:
+    lines = ["| policy | algorithm | added to | runs | actions each | time each [s] |", "|---|---|---|---:|---:|---:|"]
+    for name, entry in policies.items():
+        plan, runs = entry["plan"], entry["runs"]
+        times = [run["seconds"] for run in runs]
+        lines.append(
+            f"| `{name}` | {plan['algorithm']} | {plan['interface']['base']} | {len(runs)} | {runs[0]['actions'] / 1e6:.1f} M "
+            f"| {min(times):.0f} to {max(times):.0f} |"
+        )
+    return lines
+
+
+def _goals(result: Mapping[str, Any]) -> list[str]:
+    task, arms = GOAL
+    lines = [
+        f"On {task}, {arms}. Each measure is held against the controller that is best in that measure. P is the probability",
+        "that a run of the policy does better than that controller on the same arm.",
+        "",
+        "| policy | measure | policy has | rival | rival has | less by | P | |",
+        "|---|---|---:|---|---:|---:|---:|---|",
+    ]
+    for name, kinds in result["tasks"][task][arms]["verdicts"].items():
+        for kind, say in (("thesis", against_thesis), ("classical", against_classical)):
+            for verdict in kinds[kind]:
+                goal = f"goal {100 * verdict['goal']:.0f} %: {say(verdict)}" if kind == "thesis" else f"of all: {say(verdict)}"
+                fields = (
+                    f"`{name}`",
+                    verdict["measure"],
+                    _interval(verdict["policy"], 3),
+                    f"`{verdict['rival']}`",
+                    _interval(verdict["rival_has"], 3),
+                    f"{100 * verdict['less_by']:.0f} %",
+                    f"{verdict['improvement']['probability']:.2f}",
+                    goal,
+                )
+                lines.append(_line(fields))
+    return lines
+
+
+def _rows(cells: Mapping[str, Any], policies: Mapping[str, Any]) -> list[str]:
+    lines = [_line(["", "", *(heading for _, heading, _ in COLUMNS)]), "|---|---|" + "---:|" * len(COLUMNS)]
+    for name, cell in cells.items():
+        kind = "learned" if name in policies else "thesis" if name in THESIS else "classical"
+        lines.append(_line([f"`{name}`", kind, *(_interval(cell[key], digits) for key, _, digits in COLUMNS)]))
+    return lines
+
+
+def _line(entries: Sequence[str]) -> str:
+    return "| " + " | ".join(entries) + " |"
+
+
+def _interval(value: Mapping[str, float], digits: int) -> str:
+    return f"{value['iqm']:.{digits}f} ({value['low']:.{digits}f} to {value['high']:.{digits}f})"

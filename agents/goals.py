@@ -1,0 +1,84 @@
+"""Whether policies do better than classical controllers, by how much, and whether chance could have done it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from agents.statistics import improvement, stratified_interval
+
+Floats = NDArray[np.float64]
+#: Measures (runs, arms) of one agent.
+Values = Mapping[str, Floats]
+
+#: The controllers of the thesis; the others are what it leaves for future work.
+THESIS = (
+    "pd",
+    "pd_rate_limited",
+    "vibration_dual",
+    "vibration_dual_plain",
+    "vibration_high",
+    "vibration_low",
+    "vibration_practical",
+)
+#: Share by which a policy is to be below the best controller of the thesis.
+GOALS = {"settling_time": 0.4, "steady_error": 0.8, "residual_strain": 0.7}
+
+
+def cell_of(values: Values) -> dict[str, dict[str, float]]:
+    """Return each measure's interquartile mean and the ends of its 95 % interval."""
+    found = {name: stratified_interval([measured]) for name, measured in values.items()}
+    return {name: {"iqm": value, "low": low, "high": high} for name, (value, low, high) in found.items()}
+
+
+def best_of(names: Sequence[str], cells: Mapping[str, Any], measure: str) -> str:
+    """Return who has the least interquartile mean of a measure."""
+    return min(names, key=lambda name: cells[name][measure]["iqm"])
+
+
+def verdicts(policy: str, rivals: Sequence[str], cells: Mapping[str, Any], values: Mapping[str, Values]) -> list[dict[str, Any]]:
+    """Return for each measure of GOALS how a policy stands against the best of its rivals in that very measure.
+
+    Args:
+        policy: name.
+        rivals: names.
+        cells: of all, by name.
+        values: of all, by name.
+    """
+    found = []
+    for measure, goal in GOALS.items():
+        rival = best_of(rivals, cells, measure)
+        own, other = cells[policy][measure], cells[rival][measure]
+        better, low, high = improvement(values[policy][measure], values[rival][measure])
+        found.append(
+            {
+                "measure": measure,
+                "rival": rival,
+                "policy": own,
+                "rival_has": other,
+                "less_by": 1.0 - own["iqm"] / other["iqm"] if other["iqm"] else 0.0,
+                "goal": goal,
+                "apart": own["high"] < other["low"] or other["high"] < own["low"],
+                "improvement": {"probability": better, "low": low, "high": high},
+            }
+        )
+    return found
+
+
+def against_thesis(verdict: Mapping[str, Any]) -> str:
+    """Say whether a goal against the thesis is reached."""
+    if verdict["less_by"] >= verdict["goal"] and verdict["apart"]:
+        return "reached"
+    if not verdict["apart"]:
+        return "missed: intervals touch"
+    return f"missed by {100.0 * (verdict['goal'] - verdict['less_by']):.0f} points"
+
+
+def against_classical(verdict: Mapping[str, Any]) -> str:
+    """Say whether a policy is better, worse, or neither, by intervals that do not touch."""
+    if not verdict["apart"]:
+        return "no difference"
+    return "better" if verdict["less_by"] > 0.0 else "worse"

@@ -1,0 +1,131 @@
+"""A trained policy in one file: weights, what it saw and did, its arm, its run. Loading one runs no code of it."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import save
+from stable_baselines3.common.policies import BasePolicy
+
+from agents.learning.episodes import RATE
+from agents.learning.interface import PolicyInterface
+from agents.learning.models import TRAINING_ONLY, bare_policy
+from agents.learning.options import Plan
+from agents.learning.plan_file import read_table
+from flexarm_env.arm import Arm
+from flexarm_env.arm_file import arm_from_table, arm_text
+from flexarm_env.effects import catalogue
+from flexarm_env.errors import InputError
+from flexarm_env.files import write_whole
+
+FORMAT = "flexarm-policy-1"
+LARGEST_FILE = 100_000_000
+
+
+@dataclass(frozen=True)
+class Artefact:
+    """A trained policy.
+
+    Attributes:
+        plan: by which it was trained, its task and interface in it.
+        arm: that its filters and its base controller believe in.
+        weights: of what acts, without the critic.
+        run: seed, version, commit, actions, seconds, curve: [[actions, mean return of an episode], …].
+    """
+
+    plan: Plan
+    arm: Arm
+    weights: Mapping[str, torch.Tensor]
+    run: Mapping[str, Any]
+
+    def save(self, path: Path) -> None:
+        """Write the file, whole or not at all: weights as safetensors, the rest as text in its header."""
+        text = {"format": FORMAT, "plan": json.dumps(self.plan.table()), "arm": arm_text(self.arm), "run": json.dumps(self.run)}
+        tensors = {name: value.detach().contiguous().clone() for name, value in self.weights.items()}
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(path, save(tensors, text))
+
+    @classmethod
+    def load(cls, path: Path) -> Artefact:
+        """Read a file.
+
+        Raises:
+            InputError: for a file that is not there, or is no such artefact, in one line.
+        """
+        try:
+            if path.stat().st_size > LARGEST_FILE:
+                raise InputError(f"{path} is larger than {LARGEST_FILE} bytes: that is no policy")
+            with safe_open(path, "pt") as file:
+                text = file.metadata() or {}
+                weights = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
+            if text.get("format") != FORMAT:
+                raise InputError(f"{path} holds no policy of format {FORMAT}; python -m agents.train makes one")
+            arm = arm_from_table(tomllib.loads(text["arm"]), path.stem, catalogue())
+            return cls(read_table(json.loads(text["plan"])), arm, weights, json.loads(text["run"]))
+        except OSError as error:
+            raise InputError(f"cannot read {path}: {error.strerror}; name a file that python -m agents.train wrote") from None
+        except (SafetensorError, KeyError, json.JSONDecodeError, tomllib.TOMLDecodeError) as error:
+            raise InputError(f"{path} is no policy ({error}); python -m agents.train makes one") from None
+
+    def agent(self) -> LearnedPolicy:
+        """Return the policy, ready to drive arms.
+
+        Raises:
+            InputError: where the weights do not fit the plan.
+        """
+        interface = PolicyInterface(self.plan.interface, self.arm, 1.0 / RATE)
+        policy = bare_policy(self.plan, interface.size)
+        try:
+            lacking, surplus = policy.load_state_dict(dict(self.weights), strict=False)
+        except RuntimeError as error:
+            raise InputError(f"the weights do not fit the plan: {str(error).splitlines()[-1].strip()}; train again") from None
+        lacking = [name for name in lacking if not name.startswith(TRAINING_ONLY)]
+        if lacking or surplus:
+            raise InputError(f"the weights do not fit the plan: {', '.join([*lacking, *surplus][:3])}; train again")
+        return LearnedPolicy(policy, interface)
+
+
+def acting_weights(policy: BasePolicy) -> dict[str, torch.Tensor]:
+    """Return the weights that acting needs."""
+    return {name: value for name, value in policy.state_dict().items() if not name.startswith(TRAINING_ONLY)}
+
+
+class LearnedPolicy:
+    """Drives arms, one or many: what agents/rollout.py asks of an agent.
+
+    Args:
+        policy: of Stable-Baselines3 or sb3-contrib, its critic untrained.
+        interface: between it and the arms.
+    """
+
+    def __init__(self, policy: BasePolicy, interface: PolicyInterface) -> None:
+        self.policy, self.interface = policy, interface
+        policy.set_training_mode(False)
+        self.reset()
+
+    def reset(self, count: int | None = None) -> None:
+        """Start an episode of `count` arms, or of one."""
+        self.alone, width = count is None, count or 1
+        self.interface.start(width)
+        self.memory: Any = None
+        self.starts = np.ones(width, dtype=bool)
+        self.held = np.zeros((width, 1), dtype=np.float32)
+
+    def action(self, observation: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
+        """Return shares of the limit (…, 1) for physical observations (…, signals + 1); … is nothing or the count."""
+        self.interface.see(np.asarray(observation)[None] if self.alone else observation)
+        if self.interface.sample % self.interface.options.repeat == 0:
+            seen = self.interface.features()
+            self.held, self.memory = self.policy.predict(seen, self.memory, self.starts, deterministic=True)
+            self.starts = np.zeros_like(self.starts)
+        command = self.interface.send(self.held)
+        return command[0] if self.alone else command

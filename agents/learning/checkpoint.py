@@ -1,0 +1,78 @@
+"""The state of a run between two batches of episodes, from which it goes on bit for bit."""
+
+from __future__ import annotations
+
+import io
+import pickle
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from stable_baselines3.common.base_class import BaseAlgorithm
+from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
+
+from agents.learning.episodes import EpisodeVecEnv
+from flexarm_env.errors import InputError
+from flexarm_env.files import write_whole
+
+
+def write_checkpoint(path: Path, model: BaseAlgorithm, env: EpisodeVecEnv, run: dict[str, Any]) -> None:
+    """Write weights, optimisers, random numbers and which episode is next; a replay buffer is left out."""
+    _, places, position, spare, normal = np.random.get_state()  # noqa: NPY002
+    state = {
+        "run": run,
+        "parts": model.get_parameters(),
+        "extra": {name: getattr(model, name).data for name in _loose(model)},
+        "torch": torch.get_rng_state(),
+        "numpy": [torch.from_numpy(places.astype(np.int64)), int(position), int(spare), float(normal)],
+        "actions": model.num_timesteps,
+        "updates": model._n_updates,
+        # the episode that the next batch begins with has been started
+        "episode": env.next_episode - 1,
+    }
+    whole = io.BytesIO()
+    torch.save(state, whole)
+    write_whole(path, whole.getvalue())
+
+
+def read_checkpoint(path: Path) -> dict[str, Any]:
+    """Return what write_checkpoint wrote; tensors and plain values only, so that reading one runs no code.
+
+    Raises:
+        InputError: for a file that is no checkpoint.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # torch warns of a file that it did not write, and then refuses it
+            found = torch.load(path, map_location="cpu", weights_only=True)
+    except (OSError, RuntimeError, pickle.UnpicklingError, EOFError) as error:
+        raise InputError(f"{path} is no checkpoint ({str(error).splitlines()[0]}); delete it to start anew") from None
+    if not (isinstance(found, dict) and {"run", "parts", "numpy", "episode"} <= found.keys()):
+        raise InputError(f"{path} is no checkpoint; delete it to start anew")
+    return found
+
+
+def restore(state: dict[str, Any], model: BaseAlgorithm, env: EpisodeVecEnv) -> None:
+    """Put a model and its arms where they were; random numbers are set by restore_randomness, last of all."""
+    model.set_parameters(state["parts"], exact_match=True, device="cpu")
+    for name in _loose(model):
+        getattr(model, name).data = state["extra"][name]
+    model.num_timesteps, model._n_updates = state["actions"], state["updates"]
+    env.next_episode = state["episode"]
+    if isinstance(model, OffPolicyAlgorithm):
+        # what was remembered is gone: act until as much is there as before the first update
+        model.learning_starts += model.num_timesteps
+
+
+def restore_randomness(state: dict[str, Any]) -> None:
+    """Set the generators of torch and numpy, from which SB3 draws actions and batches."""
+    places, position, spare, normal = state["numpy"]
+    np.random.set_state(("MT19937", places.numpy().astype(np.uint32), position, spare, normal))  # noqa: NPY002
+    torch.set_rng_state(state["torch"])
+
+
+def _loose(model: BaseAlgorithm) -> list[str]:
+    """Names of the tensors that stand beside the model's networks."""
+    return [name for name in model._get_torch_save_params()[1] if getattr(model, name, None) is not None]

@@ -1,0 +1,136 @@
+"""What a policy sees and what its output does: readings, filters and a classical controller in, commands out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from agents.learning.options import InterfaceOptions
+from flexarm_env.arm import Arm
+from flexarm_env.controllers import make_controller
+from flexarm_env.controllers.estimator import Estimator, scalar
+from flexarm_env.controllers.lqg import LQG
+from flexarm_env.controllers.payload import PayloadEstimator
+
+Floats = NDArray[np.float64]
+
+#: Below these sizes a feature is nearly linear, above it grows with the logarithm: a policy has to see 0.1° and 100°.
+FINE = {"arm_angle": 0.01, "motor_speed": 0.1, "strain_mid": 0.02, "strain_base": 0.02, "tip_deflection": 0.001}
+FINE_STATE = {"hub": 0.003, "hub_rate": 0.03, "tip": 0.001, "tip_rate": 0.01, "friction": 0.1}
+#: Features are divided by this, so that most are within ±2.
+SPREAD = 3.0
+PAYLOAD_SCALE = 0.15
+#: Action from which on the kick is whole: in between it grows evenly, so that learning has a slope to go by.
+WHOLE_KICK = 0.1
+
+
+def static_friction(arm: Arm) -> float:
+    """Return the command [A or V] whose torque a stuck hub's dry friction can just hold, as the arm has it."""
+    effects, drive = dict(arm.present()), arm.constants["drive"]
+    torque = effects.get("coulomb", {}).get("torque", 0.0) + effects.get("stiction", {}).get("extra", 0.0)
+    per_torque = drive["resistance"] if arm.input == "voltage" else 1.0
+    return float(torque * per_torque / (drive["gear_ratio"] * drive["torque_constant"]))
+
+
+def squeezed(value: Floats, fine: float) -> Floats:
+    """Return asinh(value / fine) over the common spread."""
+    squeezed: Floats = np.arcsinh(value / fine) / SPREAD
+    return squeezed
+
+
+class PolicyInterface:
+    """Between a policy and many arms, at every sample: `see` readings, `features` for the policy, `send` its action.
+
+    Args:
+        options: what is shown and how actions act.
+        arm: that the policy's filters and its base controller believe in.
+        interval: control period [s].
+
+    Raises:
+        InputError: for an arm that lacks what the filters or the base controller need.
+    """
+
+    def __init__(self, options: InterfaceOptions, arm: Arm, interval: float) -> None:
+        self.options, self.arm, self.signals = options, arm, list(arm.signals)
+        self.limit = arm.constants["drive"]["limit"]
+        self.base = make_controller(options.base, arm, interval) if options.base != "none" else None
+        self.estimator = Estimator(arm, interval) if options.estimate else None
+        self.weigher = PayloadEstimator(arm, interval) if options.estimate else None
+        #: What an average takes over of each new reading (averages, 1, 1).
+        self.fresh = 1.0 - np.exp(-interval / np.array(options.averages).reshape(-1, 1, 1))
+        self.kick = options.kick * static_friction(arm) / self.limit
+        self.depth = max([*options.lags, *options.command_lags], default=0) + 1
+        self.fine = np.array([FINE[signal] for signal in self.signals])
+        self.angle = self.signals.index("arm_angle")
+        self.start(1)
+        self.size = self.features().shape[1]
+
+    def start(self, count: int) -> None:
+        """Start an episode of `count` arms."""
+        self.count, self.sample = count, -1
+        self.readings = np.zeros((self.depth, count, len(self.signals)))
+        self.averages = np.zeros((len(self.fresh), count, len(self.signals)))
+        self.commands = np.zeros((self.depth, count))
+        self.target, self.wanted, self.last = np.zeros(count), np.zeros(count), np.zeros(count)
+        self.command = np.zeros(count)
+        if self.base:
+            self.base.reset(count)
+        if self.estimator and self.weigher:
+            self.estimator.start(count)
+            self.weigher.start(count)
+            self.state, self.payload = self.estimator.state, self.weigher.payload
+
+    def see(self, observation: NDArray[np.floating[Any]]) -> None:
+        """Take in physical observations (count, signals + 1) of a sample."""
+        seen = np.asarray(observation, dtype=np.float64)
+        self.sample += 1
+        here = self.sample % self.depth
+        if self.sample == 0:
+            self.readings[:] = self.averages[:] = seen[:, :-1]
+        self.averages += self.fresh * (seen[:, :-1] - self.averages)
+        self.readings[here], self.target = seen[:, :-1], seen[:, -1]
+        if self.base:
+            self.wanted = self.base.act(seen) / self.limit
+        if self.estimator and self.weigher:
+            self.state = self.estimator.correct(seen[:, :-1])
+            self.payload = self.weigher.update(seen[:, :-1])
+
+    def features(self) -> NDArray[np.float32]:
+        """Return what the policy sees now (count, size)."""
+        here, options = self.sample % self.depth, self.options
+        found = []
+        for shown in [*(self.readings[(here - lag) % self.depth] for lag in options.lags), *self.averages]:
+            readings = shown.copy()
+            readings[:, self.angle] = self.target - readings[:, self.angle]
+            found.append(squeezed(readings, self.fine))
+        for lag in options.command_lags:
+            found.append(self.commands[(here - 1 - lag) % self.depth][:, None])
+        if self.estimator:
+            found += self._estimates(self.estimator)
+        if self.base:
+            found += [self.wanted[:, None], self.last[:, None]]
+        return np.concatenate(found, axis=1, dtype=np.float32)
+
+    def _estimates(self, estimator: Estimator) -> list[Floats]:
+        model, moving = estimator.model, self.state[:, :-1]
+        tip = [name for name in model.names if name.startswith("deflection") and not name.endswith("_rate")][-1]
+        rows = {"hub": "hub", "hub_rate": "hub_rate", "tip": tip, "tip_rate": f"{tip}_rate"}
+        found = {name: scalar(model.row(state), moving) for name, state in rows.items()}
+        found["hub"] = self.target - found["hub"]
+        found["friction"] = self.state[:, -1]
+        columns = [squeezed(values, FINE_STATE[name])[:, None] for name, values in found.items()]
+        return [*columns, (self.payload / PAYLOAD_SCALE)[:, None]]
+
+    def send(self, action: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
+        """Return the shares of the limit (count, 1) that an action (count, 1) means at this sample."""
+        self.last = np.clip(np.asarray(action, dtype=np.float64)[:, 0], -1.0, 1.0)
+        push = np.clip(self.last / WHOLE_KICK, -1.0, 1.0) * self.kick
+        share = np.clip(self.wanted + self.options.authority * self.last + push, -1.0, 1.0)
+        self.commands[self.sample % self.depth] = self.command = share
+        if self.estimator:
+            self.estimator.predict(share * self.limit)
+        if isinstance(self.base, LQG):
+            self.base.estimator.amend((share - self.wanted) * self.limit)
+        return share[:, None].astype(np.float32)

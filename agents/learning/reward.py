@@ -1,0 +1,67 @@
+"""What training rewards, from the truth that a simulator knows and no policy sees."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from agents.learning.options import RewardOptions
+from flexarm_env.vector_env import FlexArmVectorEnv
+
+Floats = NDArray[np.float64]
+
+#: Frequency [Hz] at which the strain's rate counts as much as the strain itself: about that of the stuck arm.
+BEAM_FREQUENCY = 2.0
+#: Sizes at which the logarithmic costs are 1 [deg, V].
+WHOLE_ERROR, WHOLE_STRAIN = 100.0, 3.0
+
+
+class TrainingReward:
+    """Costs of the tip's error, of vibration and of the command for many arms, see RewardOptions.
+
+    Args:
+        options: scales and weights.
+        envs: whose arms are judged.
+    """
+
+    def __init__(self, options: RewardOptions, envs: FlexArmVectorEnv) -> None:
+        self.options, self.envs = options, envs
+        beam = envs.setup.arm.constants.get("beam", {})
+        self.length = beam.get("length", 1.0)
+        signals = list(envs.setup.arm.signals)
+        self.gage = signals.index("strain_base") if "strain_base" in signals else None
+        self.rate = envs.setup.rate
+
+    def start(self, share: float) -> None:
+        """Begin an episode of every arm, when that share of the training is over."""
+        # at full weight from the start, a policy learns to stay away from where vibration costs
+        self.vibration = self.options.vibration * (1.0 + share * (self.options.rise - 1.0))
+        self.strain = self._strain()
+        self.share = np.zeros(self.envs.num_envs)
+
+    def sample(self) -> Floats:
+        """Return the reward (arms,) of the sample that has just passed."""
+        options, info = self.options, self.envs.batch.info()
+        before, self.strain = self.strain, self._strain()
+        swing = (self.strain - before) * self.rate / (2.0 * np.pi * BEAM_FREQUENCY)
+        error = np.abs(info["hub_angle"] + info["tip_deflection"] / self.length - info["target"])
+        far = _share(np.rad2deg(error), options.tip_scale, WHOLE_ERROR)
+        shaking = _share(np.hypot(self.strain, swing), options.strain_scale, WHOLE_STRAIN)
+        near = np.exp(-np.rad2deg(error) / options.near) if options.near > 0.0 else 1.0
+        found: Floats = -far - options.distance * error - self.vibration * near * shaking
+        return found
+
+    def command(self, share: Floats) -> Floats:
+        """Return the reward (arms,) of commands over the limit (arms,), once for each action."""
+        change, self.share = share - self.share, share
+        return -self.options.effort * share**2 - self.options.change * change**2
+
+    def _strain(self) -> Floats:
+        """Return the base strain without noise (arms,) [V]; none where it is not measured."""
+        looks = self.envs.batch.looks
+        return np.zeros(len(looks)) if self.gage is None else looks[:, self.gage].copy()
+
+
+def _share(size: Floats, scale: float, whole: float) -> Floats:
+    found: Floats = np.log1p(size / scale) / np.log1p(whole / scale)
+    return found

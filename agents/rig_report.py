@@ -1,0 +1,83 @@
+"""What controllers and policies for the nominal and for the corrected arm do on the machine, as numbers and Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from agents.goals import GOALS, cell_of
+from agents.statistics import RESAMPLES, Interval, drawn_again, with_ends
+
+Floats = NDArray[np.float64]
+
+#: Least values that count in a logarithm, far below what sensors show: [s], [deg], [V].
+LEAST = {"settling_time": 0.005, "steady_error": 1e-3, "residual_strain": 1e-4}
+COLUMNS = (("settling_time", "settling [s]", 2), ("steady_error", "error [°]", 3), ("residual_strain", "strain [V]", 4))
+
+
+def cost(values: Mapping[str, Floats]) -> Floats:
+    """Return the mean logarithm (runs, episodes) of settling time, steady error and residual strain."""
+    found: Floats = np.mean([np.log(np.maximum(values[name], LEAST[name])) for name in GOALS], axis=0)
+    return found
+
+
+def less_by(values: Mapping[str, Floats], reference: Mapping[str, Floats], seed: int = 0) -> Interval:
+    """Return by which share the geometric mean of the three measures is below the reference's, with its 95 % interval.
+
+    Runs and episodes are drawn again, on both sides apart: a run is whole.
+    """
+    own, other = cost(values), cost(reference)
+    draw = np.random.default_rng(seed)
+    found = drawn_again(own, draw, RESAMPLES).mean(axis=1) - drawn_again(other, draw, RESAMPLES).mean(axis=1)
+    value, low, high = with_ends(float(own.mean() - other.mean()), found)
+    return 1.0 - float(np.exp(value)), 1.0 - float(np.exp(high)), 1.0 - float(np.exp(low))
+
+
+def verdict_of(values: Mapping[str, Mapping[str, Floats]]) -> dict[str, Any]:
+    """Return a case's cells, and how much better each one for the corrected arm is than that for the nominal arm."""
+    gains = {}
+    for name in values:
+        who, _, kind = name.rpartition(", ")
+        if kind == "corrected":
+            rivals = [rival for rival in ("nominal", "randomised") if f"{who}, {rival}" in values]
+            found = {rival: less_by(values[name], values[f"{who}, {rival}"]) for rival in rivals}
+            gains[who] = {rival: dict(zip(("value", "low", "high"), gain, strict=True)) for rival, gain in found.items()}
+    runs = {name: len(found["settling_time"]) for name, found in values.items()}
+    return {"runs": runs, "cells": {name: cell_of(found) for name, found in values.items()}, "corrected_less_by": gains}
+
+
+def report_of(result: Mapping[str, Any]) -> str:
+    """Return the whole report."""
+    lines = [
+        "# From the simulator to the machine",
+        "",
+        f"`{result['command']}`, version {result['version']}, commit {result['commit']}, seed {result['seed']}.",
+        f"The slew over 100° on a machine that hides something, {result['episodes']} episodes with other noise; interquartile",
+        "means over episodes and training runs, 95 % bootstrap intervals in which both are drawn again. Less is better.",
+    ]
+    if result["not_made"]:
+        lines += ["", f"Not made yet: {', '.join(result['not_made'])}; `python -m agents.sim_to_rig --make` goes on."]
+    for case, found in result["cases"].items():
+        diagnosis = result["diagnoses"][case]
+        named = ", ".join(diagnosis["effects"]) or "none named"
+        lines += ["", f"## {case}: {diagnosis['settings']}", ""]
+        lines.append(f"Hidden: {diagnosis['hidden']}. Diagnosis: `{diagnosis['verdict']}`, {named}, in {diagnosis['seconds']} s.")
+        lines += ["", "| for the arm | runs | " + " | ".join(heading for _, heading, _ in COLUMNS) + " |", "|---|" + "---:|" * 4]
+        for name, cell in found["cells"].items():
+            parts = [f"{cell[key]['iqm']:.{d}f} ({cell[key]['low']:.{d}f} to {cell[key]['high']:.{d}f})" for key, _, d in COLUMNS]
+            lines.append(f"| {name} | {found['runs'][name]} | " + " | ".join(parts) + " |")
+        lines += ["", *_gains(found["corrected_less_by"])]
+    return "\n".join(lines) + "\n"
+
+
+def _gains(gains: Mapping[str, Any]) -> list[str]:
+    lines = ["Geometric mean of the three, for the corrected arm below that for the other:", ""]
+    for who, rivals in gains.items():
+        for rival, gain in rivals.items():
+            say = "better" if gain["low"] > 0.0 else "worse" if gain["high"] < 0.0 else "no difference"
+            share = [f"{100.0 * gain[key]:.0f} %" for key in ("value", "low", "high")]
+            lines.append(f"- {who}, {rival}: {share[0]} ({share[1]} to {share[2]}): {say}")
+    return lines

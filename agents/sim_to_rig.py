@@ -1,0 +1,165 @@
+"""Does the arm that a diagnosis corrected make better controllers of the machine? python -m agents.sim_to_rig answers.
+
+The machine is the independent simulator of tests/rig with something hidden. Policies are trained, and classical
+controllers made, for the nominal arm, the nominal arm randomised (policies only) and the arm that `diagnose` corrected
+from three recordings of the machine; all then drive the machine.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from agents.evaluate import RATE
+from agents.learning.artefact import Artefact
+from agents.learning.options import Plan
+from agents.learning.plan_file import read_plan
+from agents.measures import MEASURES, measure
+from agents.rig import drive
+from agents.rig_report import report_of, verdict_of
+from agents.sets import FIRST_SEED
+from agents.train import place_of
+from flexarm_env import Arm, InputError, Recording, __version__, diagnose
+from flexarm_env.cli.outputs import commit
+from flexarm_env.controllers import make_controller
+from flexarm_env.files import write_whole
+from flexarm_env.tasks import TASKS
+from tests.rig import write_case
+
+PROJECT = Path(__file__).resolve().parent.parent
+FOLDER = PROJECT / "results" / "sim_to_rig"
+#: What is hidden: the rig's settings, and the effect's name in the catalogue.
+CASES: Mapping[str, tuple[Mapping[str, float], str]] = {
+    "cable": ({"cable": 0.15}, "cable_stiffness"),
+    "dead-zone": ({"dead": 0.4}, "dead_zone"),
+    "bias": ({"bias": 0.15}, "constant_torque"),
+}
+#: By which plan policies of each kind are trained; corrected ones as nominal ones, on another arm.
+PLANS = {"nominal": "nominal", "randomised": "randomised", "corrected": "nominal"}
+NOMINAL = "thesis-fem"
+CLASSICAL = ("pd", "vibration_dual", "shaped_zvd", "lqg")
+
+
+def correct(case: str, folder: Path, jobs: int) -> None:
+    """Record a machine three times, diagnose the nominal arm against it, and keep the corrected arm and the verdict."""
+    settings, effect = CASES[case]
+    with tempfile.TemporaryDirectory() as place:
+        write_case(place, dict(settings), 0)
+        found = diagnose(Arm.load(NOMINAL), Recording.read_all(place), jobs=jobs)
+    folder.mkdir(parents=True, exist_ok=True)
+    about = {"hidden": effect, "settings": settings, "verdict": found.verdict, "effects": list(found.effects)}
+    about |= {"error": dict(found.error), "seconds": round(found.seconds, 1), "version": __version__, "commit": commit()}
+    write_whole(folder / f"{case}.json", json.dumps(about, indent=1) + "\n")
+    found.arm.save(folder / f"{case}.toml")
+
+
+def plan_of(kind: str, case: str | None, folder: Path) -> tuple[Path, Plan]:
+    """Return under which name, and by which plan, policies of a kind are trained."""
+    plan = read_plan(PROJECT / "configs" / "agents" / "rig" / f"{PLANS[kind]}.toml")
+    if case is None:
+        return Path(kind), plan
+    return Path(f"{kind}-{case}"), replace(plan, arm=os.path.relpath(folder / "arms" / f"{case}.toml"))
+
+
+def wanted() -> list[tuple[str, str | None]]:
+    """Return each kind of policy, with its case where that matters."""
+    return [("nominal", None), ("randomised", None), *(("corrected", case) for case in CASES)]
+
+
+def make(folder: Path, jobs: int, say: Callable[[str], None]) -> None:
+    """Diagnose and train what is not there yet."""
+    from agents.train import one_run
+
+    for case in CASES:
+        if not (folder / "arms" / f"{case}.toml").is_file():
+            say(f"diagnosing {case}")
+            correct(case, folder / "arms", jobs)
+    most = max(plan_of(kind, case, folder)[1].seeds for kind, case in wanted())
+    # seed by seed, so that a run that is stopped leaves as many of each kind
+    for seed in range(most):
+        for kind, case in wanted():
+            name, plan = plan_of(kind, case, folder)
+            if seed < plan.seeds:
+                one_run(name, plan, seed, folder / "weights", None)
+
+
+def policies_of(folder: Path, kind: str, case: str) -> list[Path]:
+    """Return the stored runs of a kind, for a case."""
+    name, plan = plan_of(kind, case if kind == "corrected" else None, folder)
+    return [path for seed in range(plan.seeds) if (path := place_of(folder / "weights", name, seed)).is_file()]
+
+
+def evaluate(folder: Path, case: str, count: int, say: Callable[[str], None]) -> dict[str, dict[str, np.ndarray]]:
+    """Return each measure (runs, episodes) on a machine, of all policies and controllers."""
+    settings, task = CASES[case][0], TASKS["slew"]
+    agents: dict[str, list[Any]] = {}
+    for kind in PLANS:
+        agents[f"policy, {kind}"] = [Artefact.load(path).agent() for path in policies_of(folder, kind, case)]
+    arms = {"nominal": Arm.load(NOMINAL), "corrected": Arm.load(folder / "arms" / f"{case}.toml")}
+    agents |= {f"{name}, {kind}": [make_controller(name, arm, 1.0 / RATE)] for name in CLASSICAL for kind, arm in arms.items()}
+    found = {}
+    for name, runs in agents.items():
+        say(f"{case}: {name}")
+        seen = [measure(drive(agent, task, settings, count, RATE), task) for agent in runs]
+        if seen:
+            found[name] = {key: np.array([values[key] for values in seen]) for key in MEASURES}
+    return found
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Evaluate what is stored, after making what is missing where asked, and return the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m agents.sim_to_rig", description=__doc__.partition("\n")[0])
+    parser.add_argument("--make", action="store_true", help="first diagnose and train what is not there; stopped, it goes on")
+    parser.add_argument("--count", type=int, default=20, help="episodes on each machine; 20 by default")
+    parser.add_argument("--jobs", type=int, default=2, help="processes of a diagnosis; 2 by default")
+    parser.add_argument("--save", type=Path, default=FOLDER, help="folder of arms, policies and results; results/sim_to_rig")
+    asked = parser.parse_args(arguments)
+    began = time.perf_counter()
+
+    def say(text: str) -> None:
+        print(f"\r{time.perf_counter() - began:4.0f} s  {text:<70}", end="", file=sys.stderr, flush=True)
+
+    try:
+        if asked.count < 1 or asked.jobs < 1:
+            raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
+        if asked.make:
+            make(asked.save, asked.jobs, say)
+        there = [case for case in CASES if all(policies_of(asked.save, kind, case) for kind in PLANS)]
+        if not there:
+            raise InputError(f"no policies in {asked.save}; add --make to diagnose and train")
+        values = {case: evaluate(asked.save, case, asked.count, say) for case in there}
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("\nstopped; the same command goes on", file=sys.stderr)
+        return 130
+    result = {
+        "command": f"python -m agents.sim_to_rig --count {asked.count}",
+        "version": __version__,
+        "commit": commit(),
+        "seed": FIRST_SEED,
+        "episodes": asked.count,
+        "seconds": round(time.perf_counter() - began, 1),
+        "diagnoses": {case: json.loads((asked.save / "arms" / f"{case}.json").read_text("utf-8")) for case in there},
+        "not_made": [case for case in CASES if case not in there],
+        "cases": {case: verdict_of(found) for case, found in values.items()},
+    }
+    write_whole(asked.save / "sim_to_rig.json", json.dumps(result, indent=1, ensure_ascii=False) + "\n")
+    write_whole(asked.save / "sim_to_rig.md", report_of(result))
+    print(f"\n{asked.save / 'sim_to_rig.md'}: {result['seconds']} s")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,82 @@
+"""The independent simulator in the loop, and what is said of a corrected arm."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("stable_baselines3")
+
+from agents.goals import GOALS
+from agents.measures import MEASURES, measure
+from agents.rig import Machine, drive
+from agents.rig_report import cost, less_by, verdict_of
+from agents.rollout import roll_out
+from agents.sets import SETS
+from agents.sim_to_rig import CASES, main, plan_of, wanted
+from flexarm_env import Arm
+from flexarm_env.controllers import make_controller
+from flexarm_env.effects import catalogue
+from flexarm_env.tasks import TASKS
+from tests.rig import CATALOGUE, simulate
+
+
+def test_a_machine_driven_sample_by_sample_repeats_a_recording() -> None:
+    commands = 3.0 * np.sin(np.arange(60) / 5.0)
+    recorded = simulate({"dead": 0.3}, commands, 0, rate=200.0, step=2e-5)
+    machine = Machine({"dead": 0.3}, 0, 60, 200.0)
+    for k, command in enumerate(commands):
+        angle, _, strain = machine.truth()
+        assert angle == recorded["true_arm_angle"][k]
+        assert strain == pytest.approx(recorded["true_strain_base"][k], rel=1e-12)
+        machine.move(command)
+
+
+def test_the_machine_does_what_the_arm_does_where_nothing_is_hidden() -> None:
+    arm, task = Arm.load("thesis-fem"), TASKS["slew"]
+    controller = make_controller("pd", arm, 0.005)
+    machine = measure(drive(controller, task, {}, 2), task)
+    model = measure(roll_out(controller, task, arm, SETS["nominal"], 2), task)
+    assert machine["steady_error"] == pytest.approx(model["steady_error"], rel=0.05)
+    assert machine["residual_strain"] == pytest.approx(model["residual_strain"], rel=0.2)
+
+
+def test_what_is_hidden_is_in_the_catalogue() -> None:
+    for settings, effect in CASES.values():
+        assert effect in catalogue()
+        assert CATALOGUE[effect] in settings
+
+
+def test_the_corrected_arm_s_policies_are_trained_as_the_nominal_one_s(tmp_path) -> None:
+    plans = {name.name: plan for name, plan in (plan_of(kind, case, tmp_path) for kind, case in wanted())}
+    assert set(plans) == {"nominal", "randomised", *(f"corrected-{case}" for case in CASES)}
+    nominal = plans["nominal"].table()
+    for case in CASES:
+        corrected = plans[f"corrected-{case}"].table()
+        assert corrected.pop("arm").endswith(f"{case}.toml")
+        assert corrected == {key: value for key, value in nominal.items() if key != "arm"}
+
+
+def test_the_cost_is_the_logarithm_of_the_geometric_mean() -> None:
+    values = dict(zip(GOALS, (np.full((1, 4), size) for size in (2.0, 0.5, 0.01)), strict=True))
+    assert np.exp(cost(values)) == pytest.approx(np.full((1, 4), (2.0 * 0.5 * 0.01) ** (1 / 3)))
+    half = {name: 0.5 * value for name, value in values.items()}
+    assert less_by(half, values) == pytest.approx((0.5, 0.5, 0.5))
+
+
+def test_a_gain_that_only_one_run_of_three_shows_is_not_sure() -> None:
+    other = {name: np.ones((3, 10)) for name in MEASURES}
+    own = {name: np.repeat([[0.1], [1.05], [1.05]], 10, axis=1) for name in MEASURES}
+    value, low, high = less_by(own, other)
+    assert low < 0.0 < value < high
+    found = verdict_of({"policy, nominal": other, "policy, corrected": own})
+    assert found["corrected_less_by"]["policy"]["nominal"]["low"] < 0.0
+
+
+def test_without_policies_the_command_says_what_to_do(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--save", str(tmp_path)]) == 2
+    error = capsys.readouterr().err
+    assert "--make" in error
+    assert error.count("\n") == 1
