@@ -258,7 +258,8 @@ class Search:
             yield from Parallel(n_jobs=self.jobs, return_as="generator")(tasks)
         for function, positional, named in tasks if len(tasks) == 1 else []:
             with in_threads(self.jobs):
-                yield function(*positional, **named)
+                found = function(*positional, **named)
+            yield found
 
     def _drop_useless(self) -> None:
         """Take out an effect that the later ones have made needless."""
