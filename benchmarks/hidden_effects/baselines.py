@@ -10,7 +10,7 @@ from flexarm_env import Arm, Recording
 from flexarm_env.identify.data import Data, prepare
 from flexarm_env.identify.problem import Score, score
 from flexarm_env.identify.refit import Refit, best_refit, refit
-from flexarm_env.identify.screen import CANDIDATE_LEVELS, attempt, best_trials, candidates, screening_base, signatures
+from flexarm_env.identify.screen import attempt, best_trials, candidates, screening_base, signatures
 
 MOST_EFFECTS = 3
 
@@ -45,7 +45,7 @@ def _best(found: Refit, nominal: Arm, data: Data) -> tuple[str, Refit] | None:
     if not trials:
         return None
     best = min(best_trials(trials), key=lambda trial: trial.cost)
-    return best.effect, refit(best.arm, nominal, data, CANDIDATE_LEVELS)
+    return best.effect, refit(best.arm, nominal, data)
 
 
 def _criterion(found: Refit, data: Data) -> float:

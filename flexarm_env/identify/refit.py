@@ -28,7 +28,7 @@ Progress = Callable[[float, str], None]
 #: Process noise of the levels that a fit goes through, over the rms of the drive's torque.
 LEVELS = (0.03, 0.003, 0.0003)
 #: A refit whose error on the fitted part is below this is done.
-WELL = 1.2
+WELL = 1.1
 #: Error in windows above which a model is far off, and how often one that stays so is refitted once more.
 FAR_OFF, MOST_AGAIN = 3.0, 4
 #: Relative decrease of the cost at which a level is left, and at which the last one is.
@@ -126,10 +126,15 @@ def or_from_nominal(found: Refit, nominal: Arm, data: Data) -> Refit:
     now = score(found.arm, data, held_out=False)
     if now.windows < WELL:
         return found
-    added = {name: found.arm.effects[name] for name in found.arm.effects if name not in nominal.effects}
-    other = refit(replace(nominal, effects={**nominal.effects, **added}), nominal, data)
+    other = refit(with_effects_of(found.arm, nominal), nominal, data)
     then = score(other.arm, data, held_out=False)
     return other if then.windows * then.free_run < now.windows * now.free_run else found
+
+
+def with_effects_of(arm: Arm, nominal: Arm) -> Arm:
+    """Return the nominal arm with what another has beside its effects."""
+    added = {name: arm.effects[name] for name in arm.effects if name not in nominal.effects}
+    return replace(nominal, effects={**nominal.effects, **added})
 
 
 def put_back(found: Refit, nominal: Arm, strayed: float) -> Arm:

@@ -27,8 +27,6 @@ LINEAR, LARGEST_FACTOR = 0.7, 10.0
 ITERATIONS = 4
 #: Process noise at which candidates are screened, over the rms of the drive's torque.
 SCREENING_LEVEL = 0.01
-#: Levels through which a candidate is refitted together with all constants.
-CANDIDATE_LEVELS = (0.003, 0.0003)
 
 
 @dataclass(frozen=True)
@@ -198,7 +196,7 @@ def refit_effect(effect: str, base: Refit, nominal: Arm, data: Data) -> Refit:
     bases = [screening_base(start, data) for start in (base, as_it_is(nominal, data))]
     trials = [attempt(b, signature) for b in bases for signature in signatures(b, effect)]
     start = min(trials, key=lambda trial: trial.held_out).arm if trials else base.arm.with_effect(effect)
-    return polish(refit(start, nominal, data, CANDIDATE_LEVELS), nominal, data)
+    return polish(refit(start, nominal, data), nominal, data)
 
 
 def best_trials(trials: Sequence[Trial]) -> list[Trial]:

@@ -12,9 +12,18 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.data import Data
 from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.problem import Score, score
-from flexarm_env.identify.refit import FAR_OFF, Progress, Refit, as_it_is, or_from_nominal, polish, put_back, refit
+from flexarm_env.identify.refit import (
+    FAR_OFF,
+    Progress,
+    Refit,
+    as_it_is,
+    or_from_nominal,
+    polish,
+    put_back,
+    refit,
+    with_effects_of,
+)
 from flexarm_env.identify.screen import (
-    CANDIDATE_LEVELS,
     Base,
     Trial,
     attempt,
@@ -41,8 +50,9 @@ LEAST_GAIN, LEAST_TOTAL_GAIN = 0.25, 0.5
 LEAST_REMOVED, LEAST_OF_FIRST = 0.2, 1e-3
 OFFSET = "constant_torque"
 MOST_EFFECTS = 3
-#: Two effects are equivalent if the error they leave differs by less than this share of what they remove.
-SAME_GAIN = 0.03
+#: Two effects are equivalent if the excess error that they leave differs by less than the first share of what they remove, and
+#: by less than one of them leaves, or the second, whichever is more.
+SAME_GAIN, SAME_EXCESS = 0.03, 0.1
 #: A refit of the constants that leaves less than the first share of the excess error is trusted as a start; one that
 #: leaves more than the second is not.
 REFIT_HELPS, REFIT_FAILS = 0.2, 0.7
@@ -158,9 +168,8 @@ class Search:
         removed = now - measure(winner.score)
         if not self._is_worth(self.best, winner.score, measure) or (self.accepted and self._stays_lost(winner.score)):
             return False
-        level = measure(winner.score) + SAME_GAIN * removed
-        rivals = [h for h in found if len(h.effects) == len(winner.effects)]
-        same = [h.effects[0] for h in rivals if h is winner or measure(h.score) <= level]
+        rivals = self._rivals(winner, [h for h in found if len(h.effects) == len(winner.effects)], removed, measure)
+        winner, same = rivals[0], [h.effects[0] for h in rivals]
         with in_threads(self.jobs):
             refitted = polish(winner.refit, self.nominal, self.data)
         value = score(refitted.arm, self.data)
@@ -170,6 +179,25 @@ class Search:
             self.steps[effect] = value
         self.found, self.best = refitted, value
         return True
+
+    def _rivals(
+        self, winner: Hypothesis, found: Sequence[Hypothesis], removed: float, measure: Callable[[Score], float]
+    ) -> list[Hypothesis]:
+        """Return the hypotheses between which the data do not decide, best first, each refitted from nominal constants.
+
+        What tells near ones apart is less than what a fit leaves that began where constants had made up for the missing effect.
+        """
+        first = [h for h in found if h is winner or measure(h.score) <= measure(winner.score) + SAME_GAIN * removed]
+        if len(first) == 1:
+            return first
+        arms = [with_effects_of(h.refit.arm, self.nominal) for h in first]
+        again = self._refit_all([h.effects for h in first], arms, 0.7, 0.05)
+        better = [min(pair, key=lambda h: measure(h.score)) for pair in zip(first, again, strict=True)]
+        better.sort(key=lambda h: measure(h.score))
+        for hypothesis in better if len(winner.effects) == 1 else []:
+            self._remember(hypothesis.effects[0], 1.0 - measure(hypothesis.score) / measure(self.best), hypothesis.refit)
+        left = measure(better[0].score)
+        return [h for h in better if measure(h.score) <= left + min(SAME_GAIN * removed, max(left, SAME_EXCESS))]
 
     def _least(self, measure: Callable[[Score], float]) -> float:
         """Return the excess error that an effect must remove at least."""
@@ -204,7 +232,7 @@ class Search:
     def _go_on(self) -> None:
         """Refit once more without anything new: what that gains is no merit of another effect."""
         with in_threads(self.jobs):
-            found = refit(self.found.arm, self.nominal, self.data, CANDIDATE_LEVELS)
+            found = refit(self.found.arm, self.nominal, self.data)
         value = score(found.arm, self.data)
         if value.windows < self.best.windows:
             self.found, self.best = found, value
@@ -264,7 +292,7 @@ class Search:
     def _drop_useless(self) -> None:
         """Take out an effect that the later ones have made needless."""
         for effect in list(self.accepted) if len(self.accepted) > 1 else []:
-            without = refit(self.found.arm.without_effect(effect), self.nominal, self.data, CANDIDATE_LEVELS)
+            without = refit(self.found.arm.without_effect(effect), self.nominal, self.data)
             value = score(without.arm, self.data)
             measure = measure_of([value, self.best])
             if not self._is_worth(value, self.best, measure):
@@ -302,7 +330,7 @@ def _try_effect(base: Base, name: str) -> list[Trial]:
 
 
 def _refit_arm(effects: tuple[str, ...], arm: Arm, nominal: Arm, data: Data, thorough: bool) -> Hypothesis:
-    found = refit(arm, nominal, data, CANDIDATE_LEVELS)
+    found = refit(arm, nominal, data)
     if thorough:
         found = or_from_nominal(found, nominal, data)
     return Hypothesis(effects, found, score(found.arm, data))
