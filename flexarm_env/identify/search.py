@@ -104,11 +104,13 @@ class Search:
         return {"": self.found.arm}
 
     def _add_one(self, done: float, share: float) -> bool:
-        worth = not self._is_enough(self.best)
+        enough = self._is_enough(self.best)
+        if enough and self.ranking:
+            return False
         trials = self._screen(done, 0.6 * share)
         if not self.ranking:
             self._rank_screened(trials)
-        if not worth:
+        if enough:
             return False
         control = next(t for t in trials if not t.effect)
         lowest = min(t.cost for t in trials)
