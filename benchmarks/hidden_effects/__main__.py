@@ -26,10 +26,10 @@ def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.hidden_effects", description=__doc__)
     parser.add_argument("--seed", type=int, default=1, help="of the cases; 1 is for development")
     parser.add_argument("--method", choices=METHODS, default="diagnose", help="that answers them")
-    parser.add_argument("--only", default="*", metavar="PATTERN", help="names of cases, as 'backlash-*'; no table is written")
+    parser.add_argument("--only", default="*", metavar="PATTERN", help="names of cases, as 'backlash-*', or of effects to calibrate; no table is written")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--output", type=Path, default=RESULTS, help="folder of answers and tables")
-    parser.add_argument("--calibrate", action="store_true", help="only: find the sizes of the effects again")
+    parser.add_argument("--calibrate", action="store_true", help="find the sizes of the effects again instead")
     return parser.parse_args()
 
 
@@ -42,7 +42,7 @@ def main() -> None:
         print(f"{time.perf_counter() - began:5.0f} s  {text}", file=sys.stderr, flush=True)
 
     if asked.calibrate:
-        calibrate(asked.jobs, say)
+        calibrate(asked.only, asked.jobs, say)
         return
     chosen = [case for case in cases(asked.seed) if fnmatch.fnmatchcase(case.name, asked.only)]
 

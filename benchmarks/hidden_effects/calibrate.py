@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import fnmatch
 import json
 import math
 from collections.abc import Callable
 
 from joblib import Parallel, delayed
 
-from benchmarks.hidden_effects.cases import EXPERIMENTS, SIZES, STRENGTHS, Case
+from benchmarks.hidden_effects.cases import EXPERIMENTS, SIZES, STRENGTHS, Case, sizes
 from benchmarks.hidden_effects.effects import CATALOGUE, OUTSIDE, Hidden
 from benchmarks.hidden_effects.machine import record
 from flexarm_env import Arm
@@ -29,7 +30,7 @@ def strength_at(hidden: Hidden, size: float) -> float:
     middle = {key: 0.5 * (low + high) if low > -1.0 else 0.3 * high for key, (low, high) in hidden.others.items()}
     case = Case("", "one", (), 0.0, {hidden.setting: size, **middle}, EXPERIMENTS[0], seed=1)
     arm, data = prepare(Arm.load("thesis-fem"), record(case))
-    found = refit(arm, arm, data, levels=(), iterations=3)
+    found = refit(arm, arm, data)
     error = min(score(found.arm, data).windows, score(arm, data).windows)
     return math.sqrt(max(error**2 - 1.0, 0.0))
 
@@ -74,13 +75,14 @@ def _next(known: list[tuple[float, float]], wanted: float) -> float | None:
     return None if past else there
 
 
-def calibrate(jobs: int, say: Callable[[str], None]) -> None:
-    """Write the sizes of all effects."""
+def calibrate(pattern: str, jobs: int, say: Callable[[str], None]) -> None:
+    """Write the sizes of the effects whose names match a pattern; the others keep theirs."""
     everything = CATALOGUE | OUTSIDE
-    found: dict[str, dict[str, float]] = {}
-    for effect, by_strength in Parallel(n_jobs=jobs, return_as="generator")(
-        delayed(find)(effect, hidden) for effect, hidden in everything.items()
-    ):
+    found = dict(sizes()) if SIZES.exists() else {}
+    chosen = [name for name in everything if fnmatch.fnmatchcase(name, pattern)]
+    tasks = (delayed(find)(effect, everything[effect]) for effect in chosen)
+    for effect, by_strength in Parallel(n_jobs=jobs, return_as="generator")(tasks):
         found[effect] = by_strength
         say(f"{effect}: {by_strength}")
+    found = {effect: found[effect] for effect in everything}
     write_whole(SIZES, json.dumps(found, indent=1) + "\n")
