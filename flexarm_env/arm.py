@@ -181,13 +181,14 @@ class Arm(Shown):
         from flexarm_env.plant.tables import ActiveLaw
 
         active = []
+        yields = any(self.known[name].port("presliding") for name, _ in self.present())
         for name, values in self.present():
             effect = self.known[name]
             for port in LAW_PORTS:
                 if effect.port(port) is not None:
-                    varies = effect.varies if port == "friction" else port in ("torque", "drag")
+                    varies = effect.varies if port == "friction" else port in ("factor", "presliding", "torque", "drag")
                     parameters = tuple(values[key] for key in effect.parameters)
-                    share = self.constants["drive"][effect.motor_share] if effect.motor_share else 0.0
+                    share = self.constants["drive"][effect.motor_share] if effect.motor_share and not yields else 0.0
                     active.append(ActiveLaw(self.known.kinds[name, port], port, parameters, varies, share, effect.reads))
         return active
 

@@ -26,7 +26,12 @@ def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.hidden_effects", description=__doc__)
     parser.add_argument("--seed", type=int, default=1, help="of the cases; 1 is for development")
     parser.add_argument("--method", choices=METHODS, default="diagnose", help="that answers them")
-    parser.add_argument("--only", default="*", metavar="PATTERN", help="names of cases, as 'backlash-*', or of effects to calibrate; no table is written")
+    parser.add_argument(
+        "--only",
+        default="*",
+        metavar="PATTERN",
+        help="names of cases, as 'backlash-*', or of effects to calibrate; no table is written",
+    )
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--output", type=Path, default=RESULTS, help="folder of answers and tables")
     parser.add_argument("--calibrate", action="store_true", help="find the sizes of the effects again instead")

@@ -16,14 +16,18 @@ class Effect:
 
     - ``structure(structure, <parameters>)`` edits the arm's linear quantities (`flexarm_env.plant.structure.Structure`).
     - ``friction(<named quantities>, <parameters>)`` returns what the effect adds to the budget of dry friction [Nm], from any
-      of direction (±1), speed (along the direction, ≥ 0) [rad/s], angle [rad], time [s], at_rest (bool).
+      of direction (±1), speed (along the direction, ≥ 0) [rad/s], angle [rad], time [s], load (torque that the gears carry,
+      arm side; of rigid gears, the drive's) [Nm], at_rest (bool).
+    - ``factor(…)`` returns by what all dry friction is multiplied, from any of angle, time.
+    - ``presliding(…)`` returns the friction [Nm] of a hub that yields before it slides, from any of before (the friction so
+      far), travel since then [rad], level (the dry friction of sliding, ≥ 0). All dry friction then acts on the hub.
     - ``torque(…)`` returns a torque on the hub [Nm], from any of angle, speed, time.
     - ``drag(…)`` returns a force per length on the beam [N/m], from velocity [m/s].
     - ``drive(…)`` returns the command that gets through [A or V], from command, previous, interval [s].
     - ``sensor(…)`` returns what each sensor of `reads` shows, in SI units, from reading (without the effect), angle of the hub
       [rad], motor_angle [rad], time [s].
 
-    The last five run in the compiled kernel: plain arithmetic and `math` only.
+    All but the first run in the compiled kernel: plain arithmetic and `math` only.
 
     Attributes:
         name: as in arm files and on the command line.

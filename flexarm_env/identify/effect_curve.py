@@ -87,7 +87,7 @@ def driver_of(arm: Arm, name: str) -> str:
     effect = arm.known[name]
     if effect.port("structure") is not None:
         return "speed" if "viscous" in changes(arm, name) else "angle"
-    law = effect.port("friction") or effect.port("torque")
+    law = effect.port("friction") or effect.port("factor") or effect.port("torque")
     assert law is not None
     return next((driver for driver in ("time", "angle") if driver in arguments(law)), "speed")
 
@@ -108,7 +108,8 @@ def _curve(
     if motion is None:
         return None
     own = motion.torque - law_torque(corrected, rest, motion.angle, motion.speed, motion.time)
-    against = bool(effect) and (driver == "speed" or corrected.known[effect].port("friction") is not None)
+    resists = bool(effect) and any(corrected.known[effect].port(port) for port in ("friction", "factor"))
+    against = bool(effect) and (driver == "speed" or resists)
     sign = (-1.0 if driver == "speed" else -np.sign(motion.speed)) if against else 1.0
     x, y = getattr(motion, driver), sign * own
     line = _line(x, driver)

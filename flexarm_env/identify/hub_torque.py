@@ -78,12 +78,13 @@ def bare(arm: Arm) -> Arm:
 
 
 def acts_on_hub(arm: Arm, name: str) -> bool:
-    """Whether all that an effect of the arm does is a torque on the hub."""
+    """Whether all that an effect of the arm does is a torque on the hub, which follows from its motion and from time."""
     effect = arm.known[name]
     if effect.port("structure") is not None:
         changed = changes(arm, name)
         return bool(changed) and changed <= set(HUB_FIELDS)
-    return effect.port("friction") is not None or effect.port("torque") is not None
+    laws = [effect.port(port) for port in ("friction", "factor", "torque")]
+    return any(laws) and not any("load" in arguments(law) for law in laws if law is not None)
 
 
 def changes(arm: Arm, name: str) -> set[str]:
@@ -115,6 +116,12 @@ def law_torque(arm: Arm, names: Sequence[str], angle: Floats, speed: Floats, tim
             if law is not None:
                 given = motion | {"speed": along} | dict(values)
                 total += sign * np.vectorize(law, otypes=[float])(*(given[key] for key in arguments(law)))
+        factor = effect.port("factor")
+        if factor is not None:
+            given = motion | dict(values)
+            share = np.vectorize(factor, otypes=[float])(*(given[key] for key in arguments(factor)))
+            dry = [other for other in arm.effects if arm.known[other].port("friction") and acts_on_hub(arm, other)]
+            total += (share - 1.0) * law_torque(arm, dry, angle, speed, time)
     return total
 
 

@@ -33,7 +33,9 @@ from flexarm_env.files import write_whole
 
 #: Ports that are laws in the kernel: the arguments that each may name, and what its switch returns by default.
 PORTS: dict[str, tuple[tuple[str, ...], str]] = {
-    "friction": (("direction", "speed", "angle", "time", "at_rest"), "0.0"),
+    "friction": (("direction", "speed", "angle", "time", "load", "at_rest"), "0.0"),
+    "factor": (("angle", "time"), "1.0"),
+    "presliding": (("before", "travel", "level"), "level"),
     "torque": (("angle", "speed", "time"), "0.0"),
     "drag": (("velocity",), "0.0"),
     "drive": (("command", "previous", "interval"), "command"),

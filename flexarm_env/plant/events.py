@@ -30,9 +30,8 @@ from flexarm_env.plant.layout import (
     Places,
 )
 from flexarm_env.plant.propagate import dot
-from flexarm_env.plant.stick_slip import applied_offset, is_stuck, record, rubs, static_budget
+from flexarm_env.plant.stick_slip import GEAR_OPEN, applied_offset, is_stuck, load_now, record, rubs, static_budget
 
-GEAR_OPEN = 4
 # events: none, a body that stops, a held body that breaks away, gears that part or meet, a moment to look afresh
 NOTHING, STOP, BREAK, GEARS, AGAIN = 0, 1, 2, 3, 4
 
@@ -165,9 +164,10 @@ def next_event(
         o0 = applied_offset(d, n, s, mode, body, command, w, coefficients, 0)
         o1 = applied_offset(d, n, s, mode, body, command, w, coefficients, 1) if n[VARYING] else 0.0
         o2 = applied_offset(d, n, s, mode, body, command, w, coefficients, 2) if n[VARYING] else 0.0
+        load = load_now(d, n, s, mode)
         for side in range(2):
             push = 1.0 - 2.0 * side
-            budget = static_budget(d, n, s, body, push, s[HELD_HUB + body])
+            budget = static_budget(d, n, s, body, push, s[HELD_HUB + body], load)
             if start == 0.0 and push * (o0 + dot(d, row, s, HEADER, 2 * blocks)) > budget:
                 return 0.0, BREAK, float(body)
             when = look(

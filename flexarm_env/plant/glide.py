@@ -110,11 +110,11 @@ def limits(
     if stuck:
         row = here + n[HOLD_DRIVERS]
         offset = d[row + W_COMMAND] * command + d[row + W_HUB] * torque + d[row + W_ONE] + d[row + W_HELD_HUB] * held
-        low = -friction_budget(d, n, 0, -1.0, 0.0, held, s[TIME], True)
-        return torque, offset, low, friction_budget(d, n, 0, 1.0, 0.0, held, s[TIME], True)
+        low = -friction_budget(d, n, 0, -1.0, 0.0, held, s[TIME], 0.0, True)
+        return torque, offset, low, friction_budget(d, n, 0, 1.0, 0.0, held, s[TIME], 0.0, True)
     if not rubs(d, n, 0):
         return torque, 0.0, -math.inf, math.inf
-    torque -= direction * friction_budget(d, n, 0, direction, 0.0, held, s[TIME], False)
+    torque -= direction * friction_budget(d, n, 0, direction, 0.0, held, s[TIME], 0.0, False)
     return torque, 0.0, 0.0 if direction > 0.0 else -math.inf, math.inf if direction > 0.0 else 0.0
 
 

@@ -7,7 +7,7 @@ import math
 from numba import njit
 
 from flexarm_env.plant.ahead import copy_size
-from flexarm_env.plant.events import AGAIN, GEAR_OPEN, GEARS, NOTHING, found_at, next_event
+from flexarm_env.plant.events import AGAIN, GEARS, NOTHING, found_at, next_event
 from flexarm_env.plant.glide import glide
 from flexarm_env.plant.laws import drive_law, sensor_law
 from flexarm_env.plant.layout import (
@@ -30,6 +30,8 @@ from flexarm_env.plant.layout import (
     HELD_MOTOR,
     HUB_DIRECTION,
     INTERVAL,
+    KNOWN_ANGLE,
+    KNOWN_FRICTION,
     LATE_LENGTH,
     LATE_SUBSTEPS,
     MODE,
@@ -62,11 +64,14 @@ from flexarm_env.plant.propagate import (
 )
 from flexarm_env.plant.slide import DEPTH, prepare_slide, slide, slide_table, table_size
 from flexarm_env.plant.stick_slip import (
+    GEAR_OPEN,
     angle_of,
     enter,
     evaluate_forces,
     is_stuck,
+    preslides,
     record,
+    remember,
     settle,
     to_physical,
 )
@@ -170,6 +175,7 @@ def substep(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: i
             for i in range(size):
                 s[HEADER + i] = w[(trial if kind == NOTHING else found) + i]
             s[TIME] += when
+        remember(d, n, s)
         if kind == NOTHING:
             return
         happen(d, n, s, kind, which, command, w, physical, coefficients)
@@ -299,8 +305,9 @@ def place_at(d: Numbers, n: Places, s: Numbers, physical: Numbers, command: floa
     for body in range(n[BODIES]):
         speed = physical[n[COORDINATES] + body]
         s[HUB_DIRECTION + body] = 1.0 if speed >= 0.0 else -1.0
-        if speed == 0.0:
+        if speed == 0.0 and not preslides(n, body):
             mode |= 1 << body
+    s[KNOWN_ANGLE], s[KNOWN_FRICTION] = physical[0], 0.0
     enter(d, n, s, mode, w, 0)
     for body in range(n[BODIES]):
         if is_stuck(int(s[MODE]), body):

@@ -10,9 +10,21 @@ from numba import njit
 
 
 @njit
-def friction_law(kind, direction, speed, angle, time, at_rest, d, k):
+def friction_law(kind, direction, speed, angle, time, load, at_rest, d, k):
     """Budget of dry friction [Nm] that effect `kind` adds."""
     return 0.0
+
+
+@njit
+def factor_law(kind, angle, time, d, k):
+    """Factor of effect `kind` on all dry friction."""
+    return 1.0
+
+
+@njit
+def presliding_law(kind, before, travel, level, d, k):
+    """Friction [Nm] after some travel that effect `kind` makes of that before and of the dry friction to which it tends."""
+    return level
 
 
 @njit

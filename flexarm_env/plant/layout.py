@@ -19,8 +19,8 @@ C0, C1, RESPONSES, PHYSICAL, MODAL, FORCING, FORCE_COLUMNS, SPEED, SPEED_WEIGHT,
 WINDUP, WINDUP_WEIGHT, HOLD, HOLD_WEIGHT, HOLD_DRIVERS, HOLD_FORCES, DRAG_VELOCITY = range(24, 31)
 OUTPUT, OUTPUT_DRIVERS = 31, 32
 FRICTION_LAWS, TORQUE_LAWS, DRAG_LAWS, DRIVE_LAWS, PARAMETERS, GLIDES, GLIDE, REACH = range(33, 41)
-MESH, MESH_WEIGHT, SENSOR_LAWS = 41, 42, 43
-COUNTS = 44
+MESH, MESH_WEIGHT, SENSOR_LAWS, FACTOR_LAWS, PRESLIDING_LAWS = range(41, 46)
+COUNTS = 46
 
 # --- one block's numbers in GLIDE, all that a step without events needs: C, S, R₀, S + c₁ R₀, c₀, c₁, how much its
 # amplitude bends the tested row, that row's two numbers, its forcing by command, hub torque, 1, held hub, two each
@@ -30,11 +30,14 @@ GLIDE_SIZE = 17
 
 # --- d: single constants, before the modes' records
 GAP, TOLERANCE, INTERVAL, EARLY_LENGTH, LATE_LENGTH, HUB_RUBS, MOTOR_RUBS, GEAR_RATIO = range(8)
-CONSTANTS = 8
+# what the gears carry: per windup, per its rate, and of rigid ones per command
+LOAD_STIFFNESS, LOAD_DAMPING, LOAD_BY_COMMAND = range(8, 11)
+CONSTANTS = 11
 
-# --- s: the state; block coordinates z from HEADER on
+# --- s: the state; friction's memory of the hub's angle and its torque there; block coordinates z from HEADER on
 MODE, HUB_DIRECTION, MOTOR_DIRECTION, GEAR_SIDE, HELD_HUB, HELD_MOTOR, TIME, COMMAND = range(8)
-HEADER = 8
+KNOWN_ANGLE, KNOWN_FRICTION = 8, 9
+HEADER = 10
 
 # --- columns of the drivers
 W_COMMAND, W_HUB, W_MOTOR, W_ONE, W_SIDE, W_HELD_HUB, W_HELD_MOTOR = range(7)

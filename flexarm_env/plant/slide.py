@@ -56,7 +56,17 @@ from flexarm_env.plant.layout import (
     Places,
 )
 from flexarm_env.plant.propagate import INVERSE_FACTORIALS, LONG_REACH, dot, inlined_dot
-from flexarm_env.plant.stick_slip import apply_laws, is_stuck, record, rubs, static_budget
+from flexarm_env.plant.stick_slip import (
+    GEAR_OPEN,
+    apply_laws,
+    is_stuck,
+    load_now,
+    preslides,
+    record,
+    remember,
+    rubs,
+    static_budget,
+)
 
 #: Lobatto's nodes after the start, and the coefficients of u to u⁴ from the values at them of what is 0 at u = 0.
 NODES = np.array([0.5 - math.sqrt(3.0 / 28.0), 0.5, 0.5 + math.sqrt(3.0 / 28.0), 1.0])
@@ -68,10 +78,12 @@ DEPTH = 3
 TERMS = 12
 PER_BLOCK = 4
 MOST_SWEEPS = 8
-#: The first mode with open gears.
-OPEN = 4
 #: Over the force: what further sweeps may change, and the largest coefficient of the quartic part that a step may have.
 SWEEP_TOLERANCE, QUARTIC_TOLERANCE = 1e-8, 2e-2
+#: Sweeps that change the force by more than this share of what the last one did are given up.
+SLOW = 0.3
+#: Speed [rad/s] below which it does not matter to friction that yields when it turns round.
+QUIET = 1e-6
 
 
 @njit
@@ -252,7 +264,7 @@ def fit_force(
     for body in range(bodies):
         scale += abs(w[forces + body])
     before = 1.0
-    for _ in range(MOST_SWEEPS):
+    for sweep in range(MOST_SWEEPS):
         change = 0.0
         for node in range(ORDER):
             for q in range(quantities):
@@ -274,6 +286,8 @@ def fit_force(
             for body in range(bodies):
                 quartic = max(quartic, abs(w[changes + body * ORDER + ORDER - 1]))
             return quartic <= QUARTIC_TOLERANCE * scale
+        if sweep > 0 and change > SLOW * before:
+            return False
         before = change
     return False
 
@@ -295,6 +309,8 @@ def keeps(
     """Whether a body surely goes on turning or being held over the step."""
     if not rubs(d, n, body):
         return True
+    if preslides(n, body) and max(abs(before), abs(after)) + bend < QUIET:
+        return True
     bodies = n[BODIES]
     here, stuck = record(n, mode), is_stuck(mode, body)
     for other in range(bodies if moves else 0):
@@ -305,8 +321,8 @@ def keeps(
     if not stuck:
         return min(before * s[HUB_DIRECTION + body], after * s[HUB_DIRECTION + body]) > bend
     offset = dot(d, here + n[HOLD_DRIVERS] + body * n[DRIVERS], w, inputs, n[DRIVERS])
-    angle = s[HELD_HUB + body]
-    high, low = static_budget(d, n, s, body, 1.0, angle), static_budget(d, n, s, body, -1.0, angle)
+    angle, load = s[HELD_HUB + body], load_now(d, n, s, mode)
+    high, low = static_budget(d, n, s, body, 1.0, angle, load), static_budget(d, n, s, body, -1.0, angle, load)
     return max(before, after) + offset + bend < high and min(before, after) + offset - bend > -low
 
 
@@ -326,13 +342,14 @@ def slide(
     forces = start + quantities
     changes = forces + bodies
     varying = n[VARYING] > 0
-    if mode >= OPEN:
+    if mode >= GEAR_OPEN:
         return False
     for body in range(bodies if varying else 0):
         w[start + body] = dot(d, here + n[ANGLE] + body * size, s, HEADER, size)
         w[start + body] += d[here + n[HOLDS_ANGLE] + body] * s[HELD_HUB + body]
         w[start + bodies + body] = dot(d, here + n[SPEED] + body * size, s, HEADER, size)
-        if rubs(d, n, body) and not is_stuck(mode, body) and w[start + bodies + body] * s[HUB_DIRECTION + body] <= 0.0:
+        turns = rubs(d, n, body) and not is_stuck(mode, body)
+        if turns and w[start + bodies + body] * s[HUB_DIRECTION + body] <= (-QUIET if preslides(n, body) else 0.0):
             return False
     if not varying:
         for i in range(quantities):
@@ -404,4 +421,5 @@ def slide(
     for i in range(size):
         s[HEADER + i] = w[i]
     s[TIME] += length
+    remember(d, n, s)
     return True

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from numba import njit
 
-from flexarm_env.plant.laws import drag_law, friction_law, torque_law
+from flexarm_env.plant.laws import drag_law, factor_law, friction_law, presliding_law, torque_law
 from flexarm_env.plant.layout import (
     ANGLE,
     BLOCKS,
     BODIES,
+    COMMAND,
     COORDINATES,
     DRAG_LAWS,
     DRAG_VELOCITY,
     DRIVERS,
+    FACTOR_LAWS,
     FRICTION_LAWS,
+    GAP,
     GEAR_SIDE,
     HEADER,
     HELD_HUB,
@@ -24,11 +27,17 @@ from flexarm_env.plant.layout import (
     HOLDS_ANGLE,
     HUB_DIRECTION,
     HUB_RUBS,
+    KNOWN_ANGLE,
+    KNOWN_FRICTION,
+    LOAD_BY_COMMAND,
+    LOAD_DAMPING,
+    LOAD_STIFFNESS,
     MODAL,
     MODE,
     MODES,
     PHYSICAL,
     POINTS,
+    PRESLIDING_LAWS,
     SPEED,
     STATES,
     STRIDE,
@@ -44,6 +53,9 @@ from flexarm_env.plant.layout import (
     Places,
 )
 from flexarm_env.plant.propagate import dot
+
+#: Bit of a mode whose gears are open; no other stands above it.
+GEAR_OPEN = 4
 
 
 @njit
@@ -61,7 +73,7 @@ def is_stuck(mode: int, body: int) -> bool:
 @njit
 def friction_budget(
     d: Numbers, n: Places, body: int, direction: float, speed: float, angle: float, time: float,
-    at_rest: bool,
+    load: float, at_rest: bool,
 ) -> float:  # fmt: skip
     """Dry friction [Nm] that opposes motion in `direction`, or resists a push in it at rest: a sum over the effects."""
     total = 0.0
@@ -70,8 +82,34 @@ def friction_budget(
         at = n[place + 2 + 2 * j]
         share = d[at - 2 + body]
         if share > 0.0:
-            total += share * friction_law(n[place + 1 + 2 * j], direction, speed, angle, time, at_rest, d, at)
+            total += share * friction_law(n[place + 1 + 2 * j], direction, speed, angle, time, load, at_rest, d, at)
+    place = n[FACTOR_LAWS]
+    for j in range(n[place]):
+        total *= factor_law(n[place + 1 + 2 * j], angle, time, d, n[place + 2 + 2 * j])
     return max(total, 0.0)
+
+
+@njit
+def preslides(n: Places, body: int) -> bool:
+    """Whether a body's friction yields before it slides: it then never sticks."""
+    return body == 0 and n[n[PRESLIDING_LAWS]] > 0
+
+
+@njit
+def yielding(d: Numbers, n: Places, s: Numbers, angle: float, level: float) -> float:
+    """Friction [Nm] against motion to positive angles of a hub that preslides, from where it was last known."""
+    place = n[PRESLIDING_LAWS]
+    return presliding_law(n[place + 1], s[KNOWN_FRICTION], angle - s[KNOWN_ANGLE], level, d, n[place + 2])
+
+
+@njit
+def gear_load(d: Numbers, n: Places, s: Numbers, mode: int, windup: float, rate: float) -> float:
+    """Torque [Nm, arm side] that the gears carry; of rigid ones, the drive's."""
+    if n[BODIES] == 1:
+        return d[LOAD_BY_COMMAND] * s[COMMAND]
+    if mode >= GEAR_OPEN:
+        return 0.0
+    return d[LOAD_STIFFNESS] * (windup - 0.5 * s[GEAR_SIDE] * d[GAP]) + d[LOAD_DAMPING] * rate
 
 
 @njit(forceinline=True)
@@ -107,14 +145,17 @@ def read_motion(d: Numbers, n: Places, s: Numbers, mode: int, z: Numbers, at: in
 def apply_laws(d: Numbers, n: Places, s: Numbers, mode: int, time: float, w: Numbers, motion: int, out: int) -> None:
     """Write to w at `out` the torque of friction and effects on each body, then the drag at each point of the beam."""
     bodies = n[BODIES]
+    last = bodies - 1
+    load = gear_load(d, n, s, mode, w[motion + last] - w[motion], w[motion + bodies + last] - w[motion + bodies])
     for body in range(bodies):
         angle, speed = w[motion + body], w[motion + bodies + body]
         if is_stuck(mode, body):
             w[out + body] = effect_torque(d, n, body, angle, 0.0, time)
             continue
         direction = s[HUB_DIRECTION + body]
-        dry = friction_budget(d, n, body, direction, max(speed * direction, 0.0), angle, time, False)
-        w[out + body] = effect_torque(d, n, body, angle, speed, time) - direction * dry
+        dry = friction_budget(d, n, body, direction, max(speed * direction, 0.0), angle, time, load, False)
+        against = yielding(d, n, s, angle, dry) if preslides(n, body) else direction * dry
+        w[out + body] = effect_torque(d, n, body, angle, speed, time) - against
     place = n[DRAG_LAWS]
     for point in range(n[POINTS]):
         total = 0.0
@@ -159,11 +200,37 @@ def applied_offset(
 
 
 @njit
-def static_budget(d: Numbers, n: Places, s: Numbers, body: int, direction: float, angle: float) -> float:
+def load_now(d: Numbers, n: Places, s: Numbers, mode: int) -> float:
+    """Torque [Nm, arm side] that the gears carry now, if any law could ask for it."""
+    if not n[VARYING] or n[BODIES] == 1:
+        return gear_load(d, n, s, mode, 0.0, 0.0)
+    here, size = record(n, mode), 2 * n[BLOCKS]
+    windup = angle_of(d, n, s, mode, 1, s, HEADER) - angle_of(d, n, s, mode, 0, s, HEADER)
+    rate = dot(d, here + n[SPEED] + size, s, HEADER, size) - dot(d, here + n[SPEED], s, HEADER, size)
+    return gear_load(d, n, s, mode, windup, rate)
+
+
+@njit
+def static_budget(d: Numbers, n: Places, s: Numbers, body: int, direction: float, angle: float, load: float) -> float:
     """Static friction [Nm] that resists a push in `direction` on a body that stands at an angle."""
-    at_rest = friction_budget(d, n, body, direction, 0.0, angle, s[TIME], True)
+    at_rest = friction_budget(d, n, body, direction, 0.0, angle, s[TIME], load, True)
     # a body that breaks away against less than what then opposes it would be driven by its own friction
-    return max(at_rest, friction_budget(d, n, body, direction, 0.0, angle, s[TIME], False))
+    return max(at_rest, friction_budget(d, n, body, direction, 0.0, angle, s[TIME], load, False))
+
+
+@njit
+def remember(d: Numbers, n: Places, s: Numbers) -> None:
+    """Note the angle and the friction now of a hub that preslides."""
+    mode = int(s[MODE])
+    if not preslides(n, 0) or is_stuck(mode, 0):
+        return
+    size, direction = 2 * n[BLOCKS], s[HUB_DIRECTION]
+    angle = angle_of(d, n, s, mode, 0, s, HEADER)
+    speed = dot(d, record(n, mode) + n[SPEED], s, HEADER, size)
+    load = load_now(d, n, s, mode)
+    dry = friction_budget(d, n, 0, direction, max(speed * direction, 0.0), angle, s[TIME], load, False)
+    friction = yielding(d, n, s, angle, dry)
+    s[KNOWN_ANGLE], s[KNOWN_FRICTION] = angle, friction
 
 
 @njit
@@ -202,9 +269,12 @@ def settle(
     evaluate_forces(d, n, s, mode, mode | bit, w, coefficients)
     push = dot(d, record(n, mode) + n[HOLD] + body * 2 * n[BLOCKS], s, HEADER, 2 * n[BLOCKS])
     push += applied_offset(d, n, s, mode, body, command, w, coefficients, 0)
+    if preslides(n, body):
+        s[HUB_DIRECTION] = 1.0 if push >= s[KNOWN_FRICTION] else -1.0
+        return
     direction = 1.0 if push >= 0.0 else -1.0
     angle = angle_of(d, n, s, mode, body, s, HEADER)
-    turns = abs(push) > static_budget(d, n, s, body, direction, angle) or not rubs(d, n, body)
+    turns = abs(push) > static_budget(d, n, s, body, direction, angle, load_now(d, n, s, mode)) or not rubs(d, n, body)
     if turns:
         s[HUB_DIRECTION + body] = direction
     if turns == is_stuck(mode, body):

@@ -13,14 +13,31 @@ from flexarm_env.plant import layout as at
 from flexarm_env.plant.beam import Matrix, turned
 from flexarm_env.plant.modal import Mode, complete, mode_of
 from flexarm_env.plant.slide import DEPTH, table_size
-from flexarm_env.plant.structure import DRIVERS, GEAR_DAMPING_TIME, HUB_TORQUE, MOTOR_TORQUE, LinearModel, Structure, exceeds
+from flexarm_env.plant.structure import (
+    DRIVERS,
+    GEAR_DAMPING_TIME,
+    HUB_TORQUE,
+    MOTOR_TORQUE,
+    LinearModel,
+    Structure,
+    exceeds,
+    torque_by_command,
+)
 
 RESPONSE = 5
 #: Longest steps [s] over which a force that depends on the motion is fitted by one quartic; with drag, by a parabola.
 LONGEST_STEP, LONGEST_STEP_WITH_DRAG = 5e-3, 2.5e-3
 #: Change of a force [Nm, N/m] below which the sweeps that fit it stop.
 TOLERANCE = 1e-12
-LAW_LISTS = (at.FRICTION_LAWS, at.TORQUE_LAWS, at.DRAG_LAWS, at.DRIVE_LAWS, at.SENSOR_LAWS)
+LAW_LISTS = {
+    "friction": at.FRICTION_LAWS,
+    "factor": at.FACTOR_LAWS,
+    "presliding": at.PRESLIDING_LAWS,
+    "torque": at.TORQUE_LAWS,
+    "drag": at.DRAG_LAWS,
+    "drive": at.DRIVE_LAWS,
+    "sensor": at.SENSOR_LAWS,
+}
 
 
 @dataclass(frozen=True)
@@ -89,7 +106,7 @@ def pack(
     n[at.PARAMETERS] = at.CONSTANTS + count * place
     lists, _ = _law_lists(active, int(n[at.PARAMETERS]), bodies, model.signals)
     named: list[int] = []
-    for key, rows in zip(LAW_LISTS, lists, strict=True):
+    for key, rows in zip(LAW_LISTS.values(), lists, strict=True):
         n[key] = at.COUNTS + len(named)
         named += rows
     head = np.zeros((*arms, at.CONSTANTS))
@@ -100,6 +117,9 @@ def pack(
     d[..., at.GAP] = structure.gear_gap / structure.gear_ratio
     d[..., at.TOLERANCE], d[..., at.INTERVAL], d[..., at.GEAR_RATIO] = TOLERANCE, interval, structure.gear_ratio
     d[..., at.EARLY_LENGTH], d[..., at.LATE_LENGTH] = lengths[..., 0], lengths[..., 1]
+    d[..., at.LOAD_STIFFNESS] = structure.gear_stiffness
+    d[..., at.LOAD_DAMPING] = GEAR_DAMPING_TIME * structure.gear_stiffness
+    d[..., at.LOAD_BY_COMMAND] = torque_by_command(structure)
     shares = np.array([[law.motor_share if bodies == 2 else 0.0 for law in own if law.port == "friction"] for own in laws])
     d[..., at.HUB_RUBS] = np.sum(1.0 - shares, axis=-1).reshape(arms)
     d[..., at.MOTOR_RUBS] = np.sum(shares, axis=-1).reshape(arms)
@@ -184,7 +204,7 @@ def _law_lists(
     """
     parameters: list[float] = []
     lists = []
-    for port in ("friction", "torque", "drag", "drive"):
+    for port in list(LAW_LISTS)[:-1]:
         laws = [law for law in active if law.port == port]
         rows = [len(laws)]
         for law in laws:

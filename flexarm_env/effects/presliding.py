@@ -1,0 +1,30 @@
+"""Friction that yields like a spring before it slides."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar
+
+from flexarm_env.effects.base import Effect
+from flexarm_env.parameters import Parameter
+
+
+class Presliding(Effect):
+    """Friction that yields like a spring before it slides."""
+
+    name = "presliding"
+    equation = "dT/dθ = (1 − T/T_c sgn ω) / c"
+    parameters: ClassVar = {"compliance": Parameter("rad/(N*m)", 0.0, 1.0, 2e-3, null=0.0, meaning="c, of friction that stands")}
+    modifies = "coulomb"
+    looks_like = "the hub rings where it should stick, and creeps back a little after it has stopped"
+    confused_with = ("gear_compliance", "stiction")
+    source = "Dahl, AIAA J. 14 (1976) 1675"
+
+    @staticmethod
+    def presliding(before, travel, level, compliance):
+        """Return what is left after some travel of the friction before, on its way to the level of sliding."""
+        if level <= 0.0:
+            return 0.0
+        sliding = math.copysign(level, travel)
+        # what yields less than 5e-5 rad/Nm is as good as rigid, and so stiff that no step would follow it
+        return sliding + (before - sliding) * math.exp(-abs(travel) / (max(compliance, 5e-5) * level))

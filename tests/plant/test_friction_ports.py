@@ -1,0 +1,105 @@
+"""Friction beyond a budget that depends on motion: it yields before it slides, follows the gears' load, and fades as a whole."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.data import prepare
+from flexarm_env.identify.problem import score
+from flexarm_env.identify.recording import Recording
+from flexarm_env.plant.structure import GEAR_DAMPING_TIME
+from tests.rig import SIGNALS, simulate
+
+SLIDING, COMPLIANCE = 0.2, 0.05
+
+
+@pytest.fixture(scope="module")
+def hub_only() -> Arm:
+    """An arm of six elements and two bodies, whose dry friction is the hub's, and yields."""
+    arm = replace(Arm.load("thesis-fem"), effects={}).with_effect("coulomb", torque=SLIDING)
+    shares = {"drive.motor_coulomb_share": 0.0, "drive.motor_stiction_share": 0.0}
+    return arm.with_values(shares).with_effect("presliding", compliance=COMPLIANCE)
+
+
+def test_presliding_agrees_with_an_ordinary_solver_of_dahl_s_equation(hub_only):
+    plant, structure = hub_only.plant(0.002), hub_only.structure()
+    plant.place()
+    model, count = plant.model, 50
+    size = len(model.names)
+    windup = np.zeros(size)
+    windup[0], windup[1] = -1.0, 1.0
+    gears = structure.gear_stiffness * np.outer(windup, windup)
+    stiffness, damping = model.stiffness + gears, model.damping + GEAR_DAMPING_TIME * gears
+
+    def rate(_: float, x: np.ndarray, command: float) -> np.ndarray:
+        q, v, friction = x[:size], x[size:-1], x[-1]
+        force = model.input[:, 0] * command - damping @ v - stiffness @ q
+        force[0] -= friction
+        yields = (v[0] - abs(v[0]) * friction / SLIDING) / COMPLIANCE
+        return np.concatenate([v, np.linalg.solve(model.mass, force), [yields]])
+
+    commands, times = (2.0, -2.0, 0.0), 0.002 * np.arange(count + 1)
+    x, states = np.zeros(2 * size + 1), []
+    for command in commands:
+        exact = solve_ivp(rate, (0.0, times[-1]), x, "LSODA", times, args=(command,), rtol=1e-9, atol=1e-11)
+        x = exact.y[:, -1]
+        states.append(exact.y[:, :-1])
+    hub, speed = np.hstack(states)[[0, size + 1]]
+    readings = plant.replay(np.repeat(commands, count))
+    assert (np.diff(np.sign(np.diff(hub))) != 0).sum() > 5, "the hub turns round, or friction's memory is not tried"
+    assert np.abs(readings[:, 0] - hub).max() < 1e-8
+    assert np.abs(readings[:, 1] - 1.5 * speed).max() < 1e-6
+
+
+def test_a_slow_push_yields_as_dahl_s_equation_says(hub_only):
+    slow = hub_only.with_effect("viscous", coefficient=5.0)
+    plant = slow.plant(0.005)
+    plant.place()
+    per_amp = 1.5 * slow.constants["drive"]["torque_constant"]
+    for share in (0.3, 0.6, 0.9):
+        here = plant.physical()[0]
+        reached = share * SLIDING / per_amp
+        plant.replay(np.full(4000, reached))
+        assert plant.physical()[0] > here
+        assert plant.physical()[0] == pytest.approx(-COMPLIANCE * SLIDING * math.log(1.0 - share), rel=1e-3)
+    plant.replay(np.zeros(4000))  # let go, it comes back along another branch: T = −T_c + 1.9 T_c exp(−travel / (c T_c)) is 0
+    back = -COMPLIANCE * SLIDING * (math.log(0.1) + math.log(1.9))
+    assert plant.physical()[0] == pytest.approx(back, rel=1e-3)
+
+
+HIDDEN = {
+    "load_friction": ({"loadf": 0.15}, {"coefficient": 0.15}),
+    "presliding": ({"dahl": 60.0}, {"compliance": 1.0 / 60.0}),
+    "friction_warmup": ({"warm": 0.35, "warm_tau": 4.0}, {"share": 0.35, "time_constant": 4.0}),
+}
+
+
+@pytest.mark.parametrize("name", HIDDEN)
+@pytest.mark.parametrize("experiment", ["pulse", "square"])
+def test_the_rig_s_recordings_are_met_to_the_noise(name, experiment):
+    settings, values = HIDDEN[name]
+    made = simulate(settings, experiment, 1)
+    recording = Recording.from_arrays(experiment, made["time"], "current", made["current"], {s: made[s] for s in SIGNALS})
+    arm, data = prepare(Arm.load("thesis-fem"), [recording])
+    assert score(arm, data).free_run > 3.0
+    assert score(arm.with_effect(name, **values), data).free_run < 1.02
+
+
+def test_rigid_gears_carry_the_drive_s_torque():
+    arm = replace(Arm.load("thesis"), effects={}).with_effect("coulomb", torque=0.1)
+    load = arm.with_effect("load_friction", coefficient=0.25)
+    command = 2.0
+    torque = arm.constants["drive"]["gear_ratio"] * arm.constants["drive"]["torque_constant"] * command
+    more = arm.with_effect("coulomb", torque=0.1 + 0.25 * torque)
+    ends = []
+    for one in (load, more):
+        plant = one.plant(0.005)
+        plant.place()
+        ends.append(plant.replay(np.full(40, command))[-1])
+    assert np.allclose(ends[0], ends[1], rtol=1e-9)
