@@ -83,7 +83,7 @@ SWEEP_TOLERANCE, QUARTIC_TOLERANCE = 1e-8, 2e-2
 #: Sweeps that change the force by more than this share of what the last one did are given up.
 SLOW = 0.3
 #: Speed [rad/s] below which it does not matter to friction that yields when it turns round.
-QUIET = 1e-6
+QUIET = 1e-4
 
 
 @njit
