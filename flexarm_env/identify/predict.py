@@ -24,7 +24,9 @@ def replay(plant: Plant, run: Run, noise: Floats, physical: Floats | None = None
     return plant.replay(run.command, run.intervals, modal_gains(plant, physical), run.measured)
 
 
-def window_replay(plant: Plant, run: Run, observers: list[Floats], noise: Floats, interval: float) -> Floats:
+def window_replay(
+    plant: Plant, run: Run, observers: list[Floats], noise: Floats, interval: float, first: int = 0
+) -> Floats:
     """Return readings replayed freely in windows of 1 s from estimated states.
 
     The states come from replays that differ in how much they are nudged. In each window that one counts from which the
@@ -36,6 +38,7 @@ def window_replay(plant: Plant, run: Run, observers: list[Floats], noise: Floats
         observers: the kernel's gains of each replay.
         noise: (signals,) standard deviation of the readings.
         interval: sampling time [s].
+        first: sample that is wanted first; windows before it are left empty.
     """
     length = max(round(WINDOW / interval), 10)
     starts = range(0, len(run.command), length)
@@ -48,13 +51,15 @@ def window_replay(plant: Plant, run: Run, observers: list[Floats], noise: Floats
             part = slice(start, start + length + 1)
             intervals = run.intervals[part] if len(run.intervals) else run.intervals
             state = plant.state.copy()
-            free = plant.play(command[part], intervals, NO_GAINS, NOT_MEASURED)[:length]
-            inside = slice(start, start + len(free))
-            error = float(np.sum(((run.measured[inside] - free) / noise) ** 2))
-            if error < best[w] or not np.isfinite(best[w]):
-                out[inside], best[w] = free, error if np.isfinite(error) else np.inf
-            plant.state[:] = state
-            plant.play(command[part], intervals, gains, run.measured[part])
+            if start + length > first or not len(gains):
+                free = plant.play(command[part], intervals, NO_GAINS, NOT_MEASURED)[:length]
+                inside = slice(start, start + len(free))
+                error = float(np.sum(((run.measured[inside] - free) / noise) ** 2))
+                if error < best[w] or not np.isfinite(best[w]):
+                    out[inside], best[w] = free, error if np.isfinite(error) else np.inf
+            if len(gains):
+                plant.state[:] = state
+                plant.play(command[part], intervals, gains, run.measured[part])
     return out
 
 

@@ -126,12 +126,11 @@ def score(arm: Arm, data: Data, held_out: bool = True) -> Score:
     observers = {payload: window_observers(arm, plant, data) for payload, plant in plants.items()}
     totals = np.zeros(2)
     count = 0
-    for run in data.runs:
+    for run in data.runs if held_out else data.fitted:
         rows = ~run.train if held_out else run.train
-        plant = plants[run.payload]
-        for i, replayed in enumerate(
-            (window_replay(plant, run, observers[run.payload], data.noise, data.interval), replay(plant, run, data.noise))
-        ):
+        plant, first = plants[run.payload], int(np.argmax(rows))
+        windows = window_replay(plant, run, observers[run.payload], data.noise, data.interval, first)
+        for i, replayed in enumerate((windows, replay(plant, run, data.noise))):
             scaled = (run.measured[rows] - replayed[rows]) / data.noise
             totals[i] += np.sum(np.nan_to_num(scaled, nan=1e6) ** 2)
         count += int(rows.sum()) * len(data.signals)

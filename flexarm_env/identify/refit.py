@@ -33,6 +33,8 @@ WELL = 1.1
 FAR_OFF, MOST_AGAIN = 3.0, 4
 #: Relative decrease of the cost at which a level is left, and at which the last one is.
 ON_THE_WAY, AT_THE_END = 1e-2, 1e-4
+#: Iterations of a pass when only the held-out part is new.
+LAST_ITERATIONS = 2
 QUANTILE_90 = 1.6449
 #: Relative standard deviation that no value beats: no model is more exact than this.
 BEST_MODEL = 0.005
@@ -146,7 +148,7 @@ def put_back(found: Refit, nominal: Arm, strayed: float) -> Arm:
 
 def with_all(found: Refit, nominal: Arm, data: Data) -> Refit:
     """Return the refit gone on with on all of the data: what is kept once nothing is to be judged any more."""
-    whole = refit(found.arm, nominal, everything(data), (), held=False)
+    whole = refit(found.arm, nominal, everything(data), (), LAST_ITERATIONS, held=False)
     return replace(whole, moved=whole.solution.x - position(found.arm, whole.coordinates))
 
 

@@ -41,6 +41,8 @@ FINALISTS = 4
 BENT, BRIEF_LEVELS, BRIEF_ITERATIONS = 1.0, (0.003,), 2
 #: And only those that lower the cost of the screening to the first share, by no less than the second of what the best does.
 LEAST_CHANGE, LEAST_OF_BEST = 0.97, 0.3
+#: Those that do this share of what the best does are refitted first, the others only if none of them is enough.
+NEAR_BEST = 0.6
 #: A held-out error below this leaves nothing to explain.
 PERFECT = 1.1
 #: Least share of the excess error that an effect must remove to be accepted, and all accepted ones together.
@@ -115,9 +117,12 @@ class Search:
         control = next(t for t in trials if not t.effect)
         lowest = min(t.cost for t in trials)
         level = min(LEAST_CHANGE * control.cost, control.cost - LEAST_OF_BEST * (control.cost - lowest))
-        better = [t for t in trials if t.effect and t.cost < level]
-        names, arms = [(t.effect,) for t in better[:FINALISTS]], [t.arm for t in better[:FINALISTS]]
-        found = self._refit_all(names, arms, done + 0.5 * share, 0.1 * share)
+        near = control.cost - NEAR_BEST * (control.cost - lowest)
+        better = [t for t in trials if t.effect and t.cost < level][:FINALISTS]
+        found: list[Hypothesis] = []
+        for part in ([t for t in better if t.cost <= near], [t for t in better if t.cost > near]):
+            if not any(self._is_enough(h.score) for h in found):
+                found += self._refit_all([(t.effect,) for t in part], [t.arm for t in part], done + 0.5 * share, 0.1 * share)
         best = min((h.score.windows for h in found), default=np.inf)
         lost = best > FAR_OFF or excess(best) > (1.0 - LEAST_TOTAL_GAIN) * excess(self.best.windows)
         if lost and not self.accepted:  # a second effect's fits take minutes, with the first in the arm
