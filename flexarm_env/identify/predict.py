@@ -24,9 +24,7 @@ def replay(plant: Plant, run: Run, noise: Floats, physical: Floats | None = None
     return plant.replay(run.command, run.intervals, modal_gains(plant, physical), run.measured)
 
 
-def window_replay(
-    plant: Plant, run: Run, observers: list[Floats], noise: Floats, interval: float, first: int = 0
-) -> Floats:
+def window_replay(plant: Plant, run: Run, observers: list[Floats], noise: Floats, interval: float, first: int = 0) -> Floats:
     """Return readings replayed freely in windows of 1 s from estimated states.
 
     The states come from replays that differ in how much they are nudged. In each window that one counts from which the

@@ -33,6 +33,8 @@ WELL = 1.1
 FAR_OFF, MOST_AGAIN = 3.0, 4
 #: Relative decrease of the cost at which a level is left, and at which the last one is.
 ON_THE_WAY, AT_THE_END = 1e-2, 1e-4
+#: Passes at the end: the first weighs the signals by errors that it then removes, the last goes by narrow differences.
+PASSES = 3
 #: Iterations of a pass when only the held-out part is new.
 LAST_ITERATIONS = 2
 QUANTILE_90 = 1.6449
@@ -60,7 +62,15 @@ def free_coordinates(arm: Arm, nominal: Arm, data: Data) -> list[Coordinate]:
     return constants + [c for name in added for c in effect_coordinates(arm, name, data.scales)]
 
 
-def refit(arm: Arm, nominal: Arm, data: Data, levels: Sequence[float] = LEVELS, iterations: int = 6, held: bool = True) -> Refit:
+def refit(
+    arm: Arm,
+    nominal: Arm,
+    data: Data,
+    levels: Sequence[float] = LEVELS,
+    iterations: int = 6,
+    held: bool = True,
+    passes: int = PASSES,
+) -> Refit:
     """Fit all coordinates of an arm through the levels, then at the arm's own torque noise.
 
     Args:
@@ -70,10 +80,11 @@ def refit(arm: Arm, nominal: Arm, data: Data, levels: Sequence[float] = LEVELS, 
         levels: of process noise, over the rms of the drive's torque.
         iterations: for each level.
         held: whether constants are held close to their priors while the model is far off.
+        passes: at the arm's own torque noise.
     """
     scale, own = torque_scale(arm, data.runs), arm.constants["drive"]["torque_noise"]
     noises = [level * scale for level in levels if level * scale > own]
-    noises += [own] * 3  # the first pass weighs the signals by errors that it then removes; the last goes by narrow differences
+    noises += [own] * (passes if noises else max(passes, 1))
     tolerances = [ON_THE_WAY] * (len(noises) - 1) + [AT_THE_END]
     coordinates = free_coordinates(arm, nominal, data)
     x = position(arm, coordinates)
@@ -81,7 +92,7 @@ def refit(arm: Arm, nominal: Arm, data: Data, levels: Sequence[float] = LEVELS, 
     for number, (noise, tolerance) in enumerate(zip(noises, tolerances, strict=True), start=1):
         problem = Problem(arm, data, coordinates, noise, np.ones((len(data.runs), len(data.signals))))
         problem.weigh(place_values(arm, coordinates, x), held)
-        reach = reach.narrowed() if number == len(noises) else reach
+        reach = reach.narrowed() if number == len(noises) >= PASSES else reach
         solution = minimise(problem.residual, x, problem.prior, reach, iterations, tolerance=tolerance)
         x, reach = solution.x, solution.reach
     return Refit(place_values(arm, coordinates, x), coordinates, solution, problem)

@@ -37,8 +37,9 @@ from flexarm_env.identify.screen import (
 #: How many candidates are refitted in full in each round.
 FINALISTS = 4
 #: Constants that strayed by more standard deviations than this are put back before every effect is tried with all constants,
-#: in a fit through these levels, of so many iterations each.
-BENT, BRIEF_LEVELS, BRIEF_ITERATIONS = 1.0, (0.003,), 2
+#: in a fit at this level, of so many iterations. Those that leave more than the last share of what
+#: such a fit without an effect does are dropped.
+BENT, BRIEF_LEVEL, BRIEF_ITERATIONS, BRIEFLY_BETTER = 1.0, 0.003, 2, 0.9
 #: And only those that lower the cost of the screening to the first share, by no less than the second of what the best does.
 LEAST_CHANGE, LEAST_OF_BEST = 0.97, 0.3
 #: Those that do this share of what the best does are refitted first, the others only if none of them is enough.
@@ -151,13 +152,13 @@ class Search:
         names = [n for n in candidates(self.found.arm) if self.found.arm.known[n].fitted and n not in tried]
         straight = put_back(self.found, self.nominal, BENT)
         arms = [straight.with_effect(n, **(began.get(n) or first_start(straight, n, self.data.scales))) for n in names]
-        tasks = [delayed(_fit_briefly)(arm, self.nominal, self.data) for arm in arms]
+        tasks = [delayed(_fit_briefly)(arm, self.nominal, self.data) for arm in (*arms, straight)]
         fits: list[tuple[float, str, Refit]] = []
-        for i, (name, (error, found)) in enumerate(zip(names, self._parallel(tasks), strict=True)):
+        for i, (name, (error, found)) in enumerate(zip([*names, ""], self._parallel(tasks), strict=True)):
             fits.append((error, name, found))
-            self.say(done + 0.6 * share * (i + 1) / len(tasks), f"fitting {name} and all constants")
-        fits.sort(key=lambda fit: fit[0])
-        best = fits[:FINALISTS]
+            self.say(done + 0.6 * share * (i + 1) / len(tasks), f"fitting {name or 'nothing'} and all constants")
+        control = excess(fits.pop()[0])
+        best = sorted((fit for fit in fits if excess(fit[0]) < BRIEFLY_BETTER * control), key=lambda fit: fit[0])[:FINALISTS]
         chosen = [f.arm for _, _, f in best]
         far = best[0][0] > FAR_OFF if best else False
         return self._refit_all([(n,) for _, n, _ in best], chosen, done + 0.6 * share, 0.4 * share, thorough=far)
@@ -345,7 +346,7 @@ def _refit_arm(effects: tuple[str, ...], arm: Arm, nominal: Arm, data: Data, tho
 
 def _fit_briefly(arm: Arm, nominal: Arm, data: Data) -> tuple[float, Refit]:
     """Return an arm fitted in a few steps, and its error on the fitted part."""
-    found = refit(arm, nominal, data, BRIEF_LEVELS, BRIEF_ITERATIONS)
+    found = refit(arm, nominal, data, (BRIEF_LEVEL,), BRIEF_ITERATIONS, passes=0)
     return score(found.arm, data, held_out=False).windows, found
 
 
