@@ -13,12 +13,17 @@ from typing import Any
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
-from benchmarks.hidden_effects import baselines, table  # noqa: E402
+from benchmarks.hidden_effects import baselines, sindy, table  # noqa: E402
 from benchmarks.hidden_effects.calibrate import calibrate  # noqa: E402
 from benchmarks.hidden_effects.cases import cases  # noqa: E402
 from benchmarks.hidden_effects.run import by_diagnosis, run  # noqa: E402
 
-METHODS = {"diagnose": by_diagnosis, "best-fit": baselines.best_fit_wins, "bic": baselines.stepwise_bic}
+METHODS = {
+    "diagnose": by_diagnosis,
+    "best-fit": baselines.best_fit_wins,
+    "bic": baselines.stepwise_bic,
+    "sindy": sindy.sindy_on_residuals,
+}
 RESULTS = Path(__file__).resolve().parents[2] / "results" / "hidden_effects"
 
 

@@ -21,7 +21,7 @@ def best_fit_wins(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
     base = best_refit(nominal, data)
     found = _best(base, nominal, data)
     effects = [] if found is None else [found[0]]
-    return _answer(effects, nominal, base, base if found is None else found[1], data)
+    return answer(effects, nominal, base, base if found is None else found[1], data)
 
 
 def stepwise_bic(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
@@ -35,7 +35,7 @@ def stepwise_bic(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
             break
         effects.append(step[0])
         found = step[1]
-    return _answer(effects, nominal, base, found, data)
+    return answer(effects, nominal, base, found, data)
 
 
 def _best(found: Refit, nominal: Arm, data: Data) -> tuple[str, Refit] | None:
@@ -54,7 +54,8 @@ def _criterion(found: Refit, data: Data) -> float:
     return count * score(found.arm, data, held_out=False).windows ** 2 + len(found.coordinates) * math.log(count)
 
 
-def _answer(effects: list[str], nominal: Arm, base: Refit, found: Refit, data: Data) -> dict[str, Any]:
+def answer(effects: list[str], nominal: Arm, base: Refit, found: Refit, data: Data) -> dict[str, Any]:
+    """Return what a method found, in the form of a diagnosis."""
     before, first, last = (score(arm, data) for arm in (nominal, base.arm, found.arm))
     verdict = "effects" if effects else "parameters"
     return {

@@ -1,0 +1,87 @@
+"""SINDy on residuals: what of the torque that the refitted arm does not explain is a sparse sum of the effects' laws.
+
+Sparse identification of nonlinear dynamics (Brunton, Proctor and Kutz, PNAS 113 (2016) 3932), by pysindy's sequentially
+thresholded least squares, on the hub's torque as a smoother estimates it. It sees effects on the hub, and no others.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pysindy import STLSQ
+
+from benchmarks.hidden_effects.baselines import answer
+from flexarm_env import Arm, Recording
+from flexarm_env.identify.data import prepare
+from flexarm_env.identify.hub_torque import acts_on_hub, hub_torque, law_torque
+from flexarm_env.identify.refit import best_refit, refit
+from flexarm_env.identify.screen import first_start
+
+Floats = NDArray[np.float64]
+
+#: Least coefficient of a term, of columns and a residual of unit length; least share of the residual's power of an effect.
+THRESHOLD, LEAST_SHARE = 0.1, 0.05
+#: The hub moves above this share of its largest speed; every so many samples are taken.
+MOVING, EVERY = 0.05, 5
+CYCLES, FALLOFFS, WARMING = range(1, 13), (0.1, 0.2, 0.4), (2.0, 5.0)
+#: What the fit of the constants could take over.
+CONSTANTS = ("viscous", "coulomb")
+
+
+def terms(angle: Floats, speed: Floats, time: Floats) -> Iterator[tuple[str, Floats]]:
+    """Yield the name of an effect and one of the shapes that its torque may have (samples,)."""
+    against = -np.sign(speed)
+    yield "viscous", -speed
+    yield "coulomb", against
+    yield "constant_torque", np.ones_like(speed)
+    yield "asymmetric_viscous", -np.abs(speed)
+    yield "cable_stiffness", -angle
+    yield "air_drag", -np.abs(speed) * speed
+    for shape in (np.sin(angle), np.cos(angle)):
+        yield "base_tilt", shape
+    for cycles in CYCLES:
+        for shape in (np.sin(cycles * angle), np.cos(cycles * angle)):
+            yield "cogging", shape
+            yield "position_friction", against * shape
+    for falloff in FALLOFFS:
+        yield "stribeck", against * np.exp(-((speed / falloff) ** 2))
+    for time_constant in WARMING:
+        yield "friction_warmup", -against * (1.0 - np.exp(-time / time_constant))
+
+
+def sparse_effects(arm: Arm, recordings: Sequence[Recording]) -> list[str]:
+    """Return the effects whose terms stay, the one that explains most of what the arm does not first."""
+    motions = hub_torque(arm, recordings)
+    time, angle, speed, torque = (np.concatenate([getattr(m, k) for m in motions]) for k in ("time", "angle", "speed", "torque"))
+    moves = np.flatnonzero(np.abs(speed) > MOVING * np.abs(speed).max())[::EVERY]
+    time, angle, speed, torque = time[moves], angle[moves], speed[moves], torque[moves]
+    own = [name for name in arm.effects if acts_on_hub(arm, name)]
+    left = torque - law_torque(arm, own, angle, speed, time)
+    names, columns = zip(*terms(angle, speed, time), strict=True)
+    library = np.stack([column / np.linalg.norm(column) for column in columns], axis=1)
+    with warnings.catch_warnings():  # that no term stays is an answer
+        warnings.filterwarnings("ignore", "Sparsity parameter is too big", UserWarning)
+        found = STLSQ(threshold=THRESHOLD).fit(library, (left / np.linalg.norm(left))[:, None]).coef_[0]
+    shares = {name: 0.0 for name in names if name not in CONSTANTS}
+    for name in shares:
+        part = library @ (found * np.array([name == other for other in names]))
+        shares[name] = float(part @ part)
+    kept = [name for name, share in shares.items() if share > LEAST_SHARE]
+    return sorted(kept, key=lambda name: -shares[name])
+
+
+def sindy_on_residuals(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
+    """Name the effects that SINDy finds in what the refitted arm leaves, and refit the arm with the first three."""
+    nominal, data = prepare(arm, recordings)
+    base = found = best_refit(nominal, data)
+    effects = sparse_effects(base.arm, recordings)[:3]
+    if effects:
+        with_them = base.arm
+        for name in effects:
+            with_them = with_them.with_effect(name, **first_start(with_them, name, data.scales))
+        found = refit(with_them, nominal, data)
+    return answer(effects, nominal, base, found, data)
