@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -22,6 +23,8 @@ LEAST_EXPLAINED = 0.005
 #: Starts whose size is scanned, and the factors.
 STARTS_SCANNED = 2
 SIZES = (0.15, 0.4, 0.75, 1.2, 2.5)
+#: Of an effect with no more starts the first is tried at these shares of its size, too: a typical one may explain nothing.
+FEW, SMALL = 2, (0.03, 0.003)
 #: An effect that explains this share of what its secant promises grows in proportion; largest factor taken from a secant.
 LINEAR, LARGEST_FACTOR = 0.7, 10.0
 ITERATIONS = 4
@@ -85,7 +88,10 @@ def signatures(base: Base, effect: str) -> list[Signature]:
 
     The effect's own starts are ranked by a finite secant; the best are tried at the size that it gives.
     """
-    secants = sorted((_secant(base, effect, start) for start in starts_of(base, effect)), key=lambda s: -s.explained)
+    starts = starts_of(base, effect)
+    if len(starts) <= FEW and base.problem.arm.known[effect].fitted:
+        starts += [_sized(base, effect, starts[0], share) for share in SMALL]
+    secants = sorted((_secant(base, effect, start) for start in starts), key=lambda s: -s.explained)
     best = max((_at_its_size(base, s) for s in secants[:STARTS_SCANNED]), key=lambda s: s.explained)
     return [best] if best.explained > LEAST_EXPLAINED else []
 
@@ -161,12 +167,18 @@ def _factors(base: Base, signature: Signature) -> tuple[float, ...]:
     return (*SIZES, *(-size for size in SIZES)) if parameter.low < 0.0 else SIZES
 
 
-def _at_size(base: Base, signature: Signature, factor: float) -> Signature:
-    effect = base.problem.arm.known[signature.effect]
-    values = dict(signature.start)
-    for key, p in effect.parameters.items():
+def _sized(base: Base, effect: str, start: Mapping[str, float], factor: float) -> dict[str, float]:
+    """Return a start with its effect so many times as strong, within bounds; what is absent at infinity is divided."""
+    values = dict(start)
+    for key, p in base.problem.arm.known[effect].parameters.items():
         if p.null is not None:
-            values[key] = min(max(values[key] * factor, p.low), p.high)
+            value = values[key] / factor if p.null == math.inf else values[key] * factor
+            values[key] = min(max(value, p.low), p.high)
+    return values
+
+
+def _at_size(base: Base, signature: Signature, factor: float) -> Signature:
+    values = _sized(base, signature.effect, signature.start, factor)
     left = unexplained(base, base.problem.residual_of(base.problem.arm.with_effect(signature.effect, **values)))
     before = unexplained(base, base.residual)
     return Signature(signature.effect, values, 1.0 - float(left @ left) / float(before @ before))
