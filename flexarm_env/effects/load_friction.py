@@ -22,5 +22,5 @@ class LoadFriction(Effect):
 
     @staticmethod
     def friction(load, coefficient):
-        """C |T_gears|."""
+        """Return c |T_gears|."""
         return coefficient * abs(load)

@@ -11,7 +11,7 @@ from joblib import Parallel, delayed
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.data import Data
-from flexarm_env.identify.problem import score
+from flexarm_env.identify.problem import brief_score
 from flexarm_env.identify.refit import Refit
 from flexarm_env.identify.screen import Base, candidates, screening_base, starts_of, unexplained
 
@@ -60,7 +60,7 @@ def could_hide(found: Refit, data: Data, least: float, jobs: int = 1) -> dict[st
         jobs: processes.
     """
     base = screening_base(found, data)
-    before = score(found.arm, data).windows ** 2
+    before = brief_score(found.arm, data) ** 2
     names = [name for name in candidates(found.arm) if found.arm.known[name].fitted]
     sized = Parallel(n_jobs=jobs)(delayed(_hidden)(base, name, before, data, least) for name in names)
     return {name: hiding for name, hiding in zip(names, sized, strict=True) if hiding}
@@ -76,7 +76,7 @@ def _hidden(base: Base, name: str, before: float, data: Data, least: float) -> H
     rise = 0.0
     for _ in range(1 if hidden.settled else WINDOW_STEPS):
         change, left = hidden.change() if hidden.settled else (1.0, 1.0)
-        rise = score(hidden.arm, data).windows ** 2 - before
+        rise = brief_score(hidden.arm, data) ** 2 - before
         hidden.step(least, rise * left / max(change, LEAST_CHANGE))
     parameter = base.problem.arm.known[name].parameters[hidden.key]
     if rise <= 0.0 or not parameter.low < hidden.value < parameter.high:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -61,9 +63,9 @@ def window_replay(plant: Plant, run: Run, observers: list[Floats], noise: Floats
     return out
 
 
-def window_observers(arm: Arm, plant: Plant, data: Data) -> list[Floats]:
+def window_observers(arm: Arm, plant: Plant, data: Data, levels: Sequence[float] = WINDOW_LEVELS) -> list[Floats]:
     """Return the kernel's gains of the replays that estimate the states from which windows start."""
     scale, own = torque_scale(arm, data.runs), arm.constants["drive"]["torque_noise"]
-    noises = sorted({max(level * scale, own) for level in WINDOW_LEVELS})
+    noises = sorted({max(level * scale, own) for level in levels})
     nudged = [modal_gains(plant, physical_gains(plant, data.noise, noise, data.interval)) for noise in noises]
     return [NO_GAINS, *nudged]

@@ -24,6 +24,8 @@ LARGEST_RESIDUAL = 1e4
 SETTLING = 0.05
 #: Time [s] over which the errors of a model that is far off hang together.
 MEMORY = 0.02
+#: Torque noises of the replays from which brief scores start, over the rms of the drive's torque.
+BRIEF_LEVELS = (2e-3, 2e-2)
 
 
 @dataclass
@@ -130,12 +132,31 @@ def score(arm: Arm, data: Data, held_out: bool = True) -> Score:
         rows = ~run.train if held_out else run.train
         plant, first = plants[run.payload], int(np.argmax(rows))
         windows = window_replay(plant, run, observers[run.payload], data.noise, data.interval, first)
-        for i, replayed in enumerate((windows, replay(plant, run, data.noise))):
-            scaled = (run.measured[rows] - replayed[rows]) / data.noise
-            totals[i] += np.sum(np.nan_to_num(scaled, nan=1e6) ** 2)
+        totals += [_squares(run, replayed, rows, data) for replayed in (windows, replay(plant, run, data.noise))]
         count += int(rows.sum()) * len(data.signals)
     windows, free = np.sqrt(totals / count)
     return Score(float(windows), float(free))
+
+
+def brief_score(arm: Arm, data: Data) -> float:
+    """Return the held-out error in windows from states that two nudged replays estimate: for arms that are nearly the same."""
+    if arm.constants["drive"]["torque_noise"] > 0.0:
+        return score(arm, data).windows
+    plants = data.plants(arm)
+    observers = {payload: window_observers(arm, plant, data, BRIEF_LEVELS)[1:] for payload, plant in plants.items()}
+    total, count = 0.0, 0
+    for run in data.runs:
+        rows = ~run.train
+        first = int(np.argmax(rows))
+        windows = window_replay(plants[run.payload], run, observers[run.payload], data.noise, data.interval, first)
+        total += _squares(run, windows, rows, data)
+        count += int(rows.sum()) * len(data.signals)
+    return float(np.sqrt(total / count))
+
+
+def _squares(run: Run, replayed: Floats, rows: NDArray[np.bool_], data: Data) -> float:
+    scaled = (run.measured[rows] - replayed[rows]) / data.noise
+    return float(np.sum(np.nan_to_num(scaled, nan=1e6) ** 2))
 
 
 def _score_innovations(plants: Mapping[float, Plant], data: Data, torque_noise: float, held_out: bool) -> Score:

@@ -36,9 +36,8 @@ from flexarm_env.identify.screen import (
 
 #: How many candidates are refitted in full in each round.
 FINALISTS = 4
-#: Constants that strayed by more standard deviations than this are put back before every effect is tried with all constants,
-#: in a fit at this level, of so many iterations. Those that leave more than the last share of what
-#: such a fit without an effect does are dropped.
+#: Constants that strayed by more standard deviations than this are put back before every effect is tried with all constants, in
+#: a fit at this level, of so many iterations. One that leaves more than the last share of what no effect would leave is dropped.
 BENT, BRIEF_LEVEL, BRIEF_ITERATIONS, BRIEFLY_BETTER = 1.0, 0.003, 2, 0.9
 #: And only those that lower the cost of the screening to the first share, by no less than the second of what the best does.
 LEAST_CHANGE, LEAST_OF_BEST = 0.97, 0.3
