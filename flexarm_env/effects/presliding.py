@@ -26,5 +26,5 @@ class Presliding(Effect):
         if level <= 0.0:
             return 0.0
         sliding = math.copysign(level, travel)
-        # what yields less than 5e-5 rad/Nm is as good as rigid, and so stiff that no step would follow it
-        return sliding + (before - sliding) * math.exp(-abs(travel) / (max(compliance, 5e-5) * level))
+        # what yields less than 2e-4 rad/Nm is stiffer than gears: as good as rigid, and slow to follow
+        return sliding + (before - sliding) * math.exp(-abs(travel) / (max(compliance, 2e-4) * level))
