@@ -13,7 +13,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.data import Data
 from flexarm_env.identify.problem import brief_score
 from flexarm_env.identify.refit import Refit
-from flexarm_env.identify.screen import Base, candidates, screening_base, starts_of, unexplained
+from flexarm_env.identify.screen import Base, candidates, screening_base, sized, starts_of, unexplained
 
 #: The size is brought down by at most the first factor at once, and up by the second: an effect that only acts from some size
 #: on, as a limit does, shows nothing below. So many steps are taken before the last, and so many where only windows tell.
@@ -90,18 +90,13 @@ class _Tried:
     def __init__(self, base: Base, name: str, start: dict[str, float]) -> None:
         self.base, self.name, self.start = base, name, start
         known = base.problem.arm.known[name].parameters
-        self.sizes = {key: p for key, p in known.items() if p.null is not None and start[key] != 0.0}
-        self.key = next(iter(self.sizes))
+        self.key = next(key for key, p in known.items() if p.null is not None and start[key] != 0.0)
         self.multiple, self.settled = 1.0, True
 
     @property
     def values(self) -> dict[str, float]:
         """Parameters at the present size; one whose absence is infinity is the stronger the smaller it is."""
-        out = dict(self.start)
-        for key, p in self.sizes.items():
-            value = out[key] / self.multiple if p.null == math.inf else out[key] * self.multiple
-            out[key] = min(max(value, p.low), p.high)
-        return out
+        return sized(self.base, self.name, self.start, self.multiple)
 
     @property
     def value(self) -> float:

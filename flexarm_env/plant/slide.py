@@ -80,7 +80,7 @@ PER_BLOCK = 4
 MOST_SWEEPS = 8
 #: Over the force: what further sweeps may change, and the largest coefficient of the quartic part that a step may have.
 SWEEP_TOLERANCE, QUARTIC_TOLERANCE = 1e-8, 2e-2
-#: Sweeps that change the force by more than this share of what the last one did are given up.
+#: Sweeps that change the force by more than this share of what the one before did are given up, if the step can be halved.
 SLOW = 0.3
 #: Speed [rad/s] below which it does not matter to friction that yields when it turns round.
 QUIET = 1e-4
@@ -232,7 +232,7 @@ def prepare_slide(d: Numbers, n: Places, mode: int, length: float, to: Numbers, 
 
 @njit
 def fit_force(
-    d: Numbers, n: Places, s: Numbers, mode: int, length: float, tab: Numbers, rows: int, w: Numbers,
+    d: Numbers, n: Places, s: Numbers, mode: int, length: float, last: bool, tab: Numbers, rows: int, w: Numbers,
     inputs: int, start: int, changes: int,
 ) -> bool:  # fmt: skip
     """Find how the forces change over the step: coefficients of u to u⁴, by body, to w at `changes`.
@@ -286,7 +286,7 @@ def fit_force(
             for body in range(bodies):
                 quartic = max(quartic, abs(w[changes + body * ORDER + ORDER - 1]))
             return quartic <= QUARTIC_TOLERANCE * scale
-        if sweep > 0 and change > SLOW * before:
+        if sweep > 0 and change > SLOW * before and not last:
             return False
         before = change
     return False
@@ -363,7 +363,7 @@ def slide(
     moves = varying and (mode != (1 << bodies) - 1 or n[n[TORQUE_LAWS]] > 0)
     bends = at + PER_BLOCK * blocks
     rows = bends + (bodies + 1) * bodies + 7
-    if moves and not (fit_force(d, n, s, mode, length, tab, rows, w, inputs, start, changes) or last):
+    if moves and not (fit_force(d, n, s, mode, length, last, tab, rows, w, inputs, start, changes) or last):
         return False
     ends = rows + ORDER * quantities * (size + drivers + ORDER * bodies)
     hub, hub_weight = tested_row(n, mode, 0)
