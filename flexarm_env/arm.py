@@ -186,7 +186,7 @@ class Arm(Shown):
             effect = self.known[name]
             for port in LAW_PORTS:
                 if effect.port(port) is not None:
-                    varies = effect.varies if port == "friction" else port in ("factor", "presliding", "torque", "drag")
+                    varies = effect.varies if port == "friction" else port in ("factor", "presliding", "torque", "weight", "drag")
                     parameters = tuple(values[key] for key in effect.parameters)
                     share = self.constants["drive"][effect.motor_share] if effect.motor_share and not yields else 0.0
                     active.append(ActiveLaw(self.known.kinds[name, port], port, parameters, varies, share, effect.reads))

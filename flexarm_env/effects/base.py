@@ -22,6 +22,7 @@ class Effect:
     - ``presliding(…)`` returns the friction [Nm] of a hub that yields before it slides, from any of before (the friction so
       far), travel since then [rad], level (the dry friction of sliding, ≥ 0). All dry friction then acts on the hub.
     - ``torque(…)`` returns a torque on the hub [Nm], from any of angle, speed, time.
+    - ``weight(…)`` returns the torque about the hub [Nm] of a force on beam and payload in proportion to their mass, from angle.
     - ``drag(…)`` returns a force per length on the beam [N/m], from velocity [m/s].
     - ``drive(…)`` returns the command that gets through [A or V], from command, previous, interval [s].
     - ``sensor(…)`` returns what each sensor of `reads` shows, in SI units, from reading (without the effect), angle of the hub

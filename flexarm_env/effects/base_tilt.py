@@ -10,19 +10,19 @@ from flexarm_env.parameters import Parameter
 
 
 class BaseTilt(Effect):
-    """Gravity on an arm whose axis is not quite upright."""
+    """Gravity on an arm whose axis is not quite upright: it turns the hub, and bends the beam by its weight and the payload's."""
 
     name = "base_tilt"
     equation = "τ = g sin(θ − θ₀)"
     parameters: ClassVar = {
-        "torque": torque_size("largest torque of gravity on the hub", 0.05),
+        "torque": torque_size("g, largest torque of gravity about the hub, without payload", 0.05),
         "uphill": Parameter("rad", -6.3, 6.3, 0.0, meaning="θ₀, where the arm points uphill and balances"),
     }
     looks_like = "missing torque is one period of a sine over a full turn of the arm"
     confused_with = ("cable_stiffness", "constant_torque")
 
     @staticmethod
-    def torque(angle, torque, uphill):
+    def weight(angle, torque, uphill):
         """G sin(θ − θ₀)."""
         return torque * math.sin(angle - uphill)
 

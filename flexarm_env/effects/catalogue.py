@@ -16,7 +16,7 @@ from flexarm_env.effects.base import Effect
 from flexarm_env.errors import InputError, did_you_mean
 
 #: Ports that run in the compiled kernel.
-LAW_PORTS = ("friction", "factor", "presliding", "torque", "drag", "drive", "sensor")
+LAW_PORTS = ("friction", "factor", "presliding", "torque", "weight", "drag", "drive", "sensor")
 
 Law = tuple[str, str, Callable[..., float], tuple[str, ...]]
 

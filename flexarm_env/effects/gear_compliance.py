@@ -14,14 +14,23 @@ class GearCompliance(Effect):
     """Gears, belt or coupling that wind up under torque."""
 
     name = "gear_compliance"
-    equation = "τ = k (θ_m/N − θ)"
-    parameters: ClassVar = {"stiffness": Parameter("N*m/rad", 1.0, math.inf, 200.0, null=math.inf, meaning="k, arm side")}
+    equation = "τ = k (ε + T dε/dt), ε = θ_m/N − θ"
+    parameters: ClassVar = {
+        "stiffness": Parameter("N*m/rad", 1.0, math.inf, 200.0, null=math.inf, meaning="k, arm side"),
+        "damping_time": Parameter("s", 1e-6, 1.0, 5e-4, meaning="T, damping of the windup over k"),
+    }
     looks_like = "motor speed leads the arm by a fast vibration of its own"
     confused_with = ("backlash", "root_compliance", "higher_modes")
     source = "Spong, J. Dyn. Syst. Meas. Control 109 (1987) 310"
     needs = ("motor_speed", "motor_inertia")
 
     @staticmethod
-    def structure(structure: Structure, stiffness: float) -> None:
-        """Put a spring between motor and hub, in place of stiffer gears."""
-        structure.gear_compliance = max(structure.gear_compliance, 1.0 / stiffness)
+    def structure(structure: Structure, stiffness: float, damping_time: float) -> None:
+        """Put a damped spring between motor and hub, in place of stiffer gears."""
+        if 1.0 / stiffness > structure.gear_compliance:
+            structure.gear_compliance, structure.gear_damping_time = 1.0 / stiffness, damping_time
+
+    @classmethod
+    def starts(cls) -> list[dict[str, float]]:
+        """Gears that ring, and damped ones."""
+        return [{"stiffness": 200.0, "damping_time": time} for time in (5e-4, 5e-3)]

@@ -23,4 +23,4 @@ class Payload(Effect):
     @staticmethod
     def structure(structure: Structure, mass: float) -> None:
         """Add to the mass at the tip."""
-        structure.tip_mass += mass
+        structure.payload += mass

@@ -87,8 +87,7 @@ def driver_of(arm: Arm, name: str) -> str:
     effect = arm.known[name]
     if effect.port("structure") is not None:
         return "speed" if "viscous" in changes(arm, name) else "angle"
-    law = effect.port("friction") or effect.port("factor") or effect.port("torque")
-    assert law is not None
+    law = next(law for port in ("friction", "factor", "torque", "weight") if (law := effect.port(port)))
     return next((driver for driver in ("time", "angle") if driver in arguments(law)), "speed")
 
 

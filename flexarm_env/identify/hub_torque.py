@@ -78,12 +78,15 @@ def bare(arm: Arm) -> Arm:
 
 
 def acts_on_hub(arm: Arm, name: str) -> bool:
-    """Whether all that an effect of the arm does is a torque on the hub, which follows from its motion and from time."""
+    """Whether all that an effect of the arm does is a torque on the hub, which follows from its motion and from time.
+
+    Weight counts as such, though it bends the beam as well.
+    """
     effect = arm.known[name]
     if effect.port("structure") is not None:
         changed = changes(arm, name)
         return bool(changed) and changed <= set(HUB_FIELDS)
-    laws = [effect.port(port) for port in ("friction", "factor", "torque")]
+    laws = [effect.port(port) for port in ("friction", "factor", "torque", "weight")]
     return any(laws) and not any("load" in arguments(law) for law in laws if law is not None)
 
 
@@ -111,7 +114,8 @@ def law_torque(arm: Arm, names: Sequence[str], angle: Floats, speed: Floats, tim
             viscous, stiffness, constant = (own[key] - other[key] for key in HUB_FIELDS)
             total += constant - viscous * speed - stiffness * angle
         motion = {"angle": angle, "time": time, "direction": np.sign(speed), "at_rest": np.False_}
-        for port, along, sign in (("friction", np.abs(speed), -np.sign(speed)), ("torque", speed, 1.0)):
+        ports = (("friction", np.abs(speed), -np.sign(speed)), ("torque", speed, 1.0), ("weight", speed, 1.0))
+        for port, along, sign in ports:
             law = effect.port(port)
             if law is not None:
                 given = motion | {"speed": along} | dict(values)

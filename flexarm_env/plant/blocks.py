@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +32,8 @@ def blocks_of(dynamics: Matrix) -> tuple[Matrix, Matrix, Matrix, Matrix]:
         (…, blocks), the same, (…, states, 2 blocks), (…, 2 blocks, states); zeros fill up arms with fewer blocks.
     """
     arms, size = dynamics.shape[:-2], dynamics.shape[-1]
+    if not arms:
+        return _blocks_of_one(dynamics.tobytes(), size)
     every = dynamics.reshape(math.prod(arms), size, size)
     parts = list(_decompositions(every)) if size else []  # a rigid arm that is held has no states
     blocks = max((c0.shape[1] for _, c0, *_ in parts), default=0)
@@ -49,6 +52,13 @@ def blocks_of(dynamics: Matrix) -> tuple[Matrix, Matrix, Matrix, Matrix]:
         v.reshape(*arms, size, 2 * blocks),
         w.reshape(*arms, 2 * blocks, size),
     )
+
+
+@lru_cache(maxsize=64)
+def _blocks_of_one(dynamics: bytes, size: int) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+    """Return the blocks of one arm: fits try many that differ in what leaves its dynamics alone."""
+    c0, c1, v, w = (stack[0] for stack in blocks_of(np.frombuffer(dynamics).reshape(1, size, size)))
+    return c0, c1, v, w
 
 
 def _alike(rows: NDArray[np.bool_] | NDArray[np.int8]) -> Iterator[Places]:

@@ -37,6 +37,7 @@ PORTS: dict[str, tuple[tuple[str, ...], str]] = {
     "factor": (("angle", "time"), "1.0"),
     "presliding": (("before", "travel", "level"), "level"),
     "torque": (("angle", "speed", "time"), "0.0"),
+    "weight": (("angle",), "0.0"),
     "drag": (("velocity",), "0.0"),
     "drive": (("command", "previous", "interval"), "command"),
     "sensor": (("reading", "angle", "motor_angle", "time"), "reading"),

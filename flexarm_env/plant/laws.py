@@ -34,6 +34,12 @@ def torque_law(kind, angle, speed, time, d, k):
 
 
 @njit
+def weight_law(kind, angle, d, k):
+    """Torque about the hub [Nm] of a force in proportion to mass on beam and payload from effect `kind`."""
+    return 0.0
+
+
+@njit
 def drag_law(kind, velocity, d, k):
     """Force per length on the beam [N/m] from effect `kind`."""
     return 0.0

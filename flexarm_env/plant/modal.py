@@ -12,7 +12,6 @@ from flexarm_env.plant.blocks import blocks_of
 from flexarm_env.plant.structure import (
     COMMAND,
     DRIVERS,
-    GEAR_DAMPING_TIME,
     GEAR_SIDE,
     HELD_HUB,
     HELD_MOTOR,
@@ -36,10 +35,10 @@ class Mode:
     held: Matrix  # (states, drivers): and from the held angles
     modal: Matrix  # (2 blocks, states): z from [q, q̇, e]
     forcing: Matrix  # (2 blocks, drivers)
-    drag_forcing: Matrix  # (2 blocks, drag points)
+    beam_forcing: Matrix  # (2 blocks, forces on the beam)
     hold: Matrix  # (bodies, 2 blocks): torque that friction must resist, on a body that stands
     hold_drivers: Matrix  # (bodies, drivers)
-    hold_drag: Matrix  # (bodies, drag points)
+    hold_beam: Matrix  # (bodies, forces on the beam)
 
 
 def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
@@ -80,8 +79,8 @@ def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
     force[..., 2 * positions :, :] = model.extra_from_input
     for column, place in held:
         force[..., 2 * positions :, column] += into_extra[..., place]
-    drag = np.zeros((*arms, states, model.drag_force.shape[-1]))
-    drag[..., rows, :] = answer @ model.drag_force
+    drag = np.zeros((*arms, states, model.beam_force.shape[-1]))
+    drag[..., rows, :] = answer @ model.beam_force
     bodies = 2 if "motor" in model.names else 1
     resist = np.zeros((*arms, bodies, states))
     resist[..., 2 * positions :] = model.from_extra[..., :bodies, :]
@@ -96,10 +95,10 @@ def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
         held=frame.at_hold,
         modal=w @ frame.pick,
         forcing=w @ force,
-        drag_forcing=w @ drag,
+        beam_forcing=w @ drag,
         hold=resist @ v,
         hold_drivers=drivers[..., :bodies, :] - inertial @ force[..., rows, :],
-        hold_drag=model.drag_force[..., :bodies, :] - inertial @ drag[..., rows, :],
+        hold_beam=model.beam_force[..., :bodies, :] - inertial @ drag[..., rows, :],
     )
 
 
@@ -117,7 +116,7 @@ def complete(free: Mode, held: Mode, body: int, speed: int) -> None:
     own, column = slice(body, body + 1), HELD_HUB + body
     by_angle = held.hold_drivers[..., own, column : column + 1] * physical[..., own, :]
     free.hold[..., own, :] = held.hold[..., own, :] @ held.modal @ physical + by_angle
-    free.hold_drivers[..., body, :], free.hold_drag[..., body, :] = held.hold_drivers[..., body, :], held.hold_drag[..., body, :]
+    free.hold_drivers[..., body, :], free.hold_beam[..., body, :] = held.hold_drivers[..., body, :], held.hold_beam[..., body, :]
     free.hold_drivers[..., body, column] = 0.0
 
 
@@ -168,7 +167,7 @@ def _close_gears(structure: Structure, model: LinearModel, stiffness: Matrix, da
     windup = np.zeros(len(model.names))
     windup[0], windup[1] = -1.0, 1.0
     stiffness += spread_out(k) * np.outer(windup, windup)
-    damping += spread_out(GEAR_DAMPING_TIME * k) * np.outer(windup, windup)
+    damping += spread_out(structure.gear_damping_time * k) * np.outer(windup, windup)
     drivers[..., GEAR_SIDE] += np.asarray(k * 0.5 * structure.gear_gap / structure.gear_ratio)[..., None] * windup
 
 

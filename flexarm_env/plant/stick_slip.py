@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from numba import njit
 
-from flexarm_env.plant.laws import drag_law, factor_law, friction_law, presliding_law, torque_law
+from flexarm_env.plant.laws import drag_law, factor_law, friction_law, presliding_law, torque_law, weight_law
 from flexarm_env.plant.layout import (
     ANGLE,
     BLOCKS,
@@ -49,6 +49,7 @@ from flexarm_env.plant.layout import (
     W_HELD_MOTOR,
     W_ONE,
     W_SIDE,
+    WEIGHT_LAWS,
     Numbers,
     Places,
 )
@@ -143,7 +144,7 @@ def read_motion(d: Numbers, n: Places, s: Numbers, mode: int, z: Numbers, at: in
 
 @njit(forceinline=True)
 def apply_laws(d: Numbers, n: Places, s: Numbers, mode: int, time: float, w: Numbers, motion: int, out: int) -> None:
-    """Write to w at `out` the torque of friction and effects on each body, then the drag at each point of the beam."""
+    """Write to w at `out` the torque of friction and effects on each body, the drag at each point of the beam, its weight."""
     bodies = n[BODIES]
     last = bodies - 1
     load = gear_load(d, n, s, mode, w[motion + last] - w[motion], w[motion + bodies + last] - w[motion + bodies])
@@ -162,6 +163,12 @@ def apply_laws(d: Numbers, n: Places, s: Numbers, mode: int, time: float, w: Num
         for j in range(n[place]):
             total += drag_law(n[place + 1 + 2 * j], w[motion + 2 * bodies + point], d, n[place + 2 + 2 * j])
         w[out + bodies + point] = total
+    place = n[WEIGHT_LAWS]
+    if n[place] > 0:
+        total = 0.0
+        for j in range(n[place]):
+            total += weight_law(n[place + 1 + 2 * j], w[motion], d, n[place + 2 + 2 * j])
+        w[out + bodies + n[POINTS] - 1] = total
 
 
 @njit(forceinline=True)

@@ -20,10 +20,9 @@ WHOLE = ("elements", "sensors")
 #: Stiffness [Nm/rad] of gears that touch, where backlash asks for a motor of its own but no
 #: compliance is given: stiff enough that windup stays below what a pot resolves.
 GEAR_STIFFNESS = 4000.0
-#: A gear or a beam's root that gives way less than this [rad/Nm] is rigid.
-LEAST_COMPLIANCE = 1e-7
-#: Damping of gears that touch, as a time [s] times their stiffness.
-GEAR_DAMPING_TIME = 5e-4
+#: Gears that give way less than this [rad/Nm] are rigid; so is a beam's root that turns by less than this share of what the beam
+#: itself does (length over bending stiffness): its undamped mode is too fast to be seen, and costs fifty times a replay.
+LEAST_COMPLIANCE, LEAST_ROOT_SHARE = 1e-7, 1e-3
 
 
 def exceeds(quantity: float | Matrix, limit: float) -> bool:
@@ -56,6 +55,7 @@ class Structure:
     mass_per_length: float = 0.0
     bending_stiffness: float = 0.0
     tip_mass: float = 0.0
+    payload: float = 0.0  # beside it
     tip_inertia: float = 0.0
     viscous: float = 0.0
     hub_stiffness: float = 0.0
@@ -63,6 +63,7 @@ class Structure:
     beam_damping: float = 0.0
     root_compliance: float = 0.0
     gear_compliance: float = 0.0
+    gear_damping_time: float = 5e-4  # of gears that touch: damping over stiffness
     gear_gap: float = 0.0
     current_lag: float = 0.0
     input_delay: float = 0.0
@@ -76,7 +77,7 @@ class Structure:
     @property
     def soft_root(self) -> bool:
         """Whether the beam's root can turn against the hub."""
-        return exceeds(self.root_compliance, LEAST_COMPLIANCE)
+        return exceeds(self.root_compliance * self.bending_stiffness, LEAST_ROOT_SHARE * self.length)
 
     @property
     def gear_stiffness(self) -> float:
@@ -109,8 +110,8 @@ class LinearModel:
     extra_from_input: Matrix
     output: Matrix
     output_from_input: Matrix
-    drag_force: Matrix
-    drag_velocity: Matrix
+    beam_force: Matrix  # (coordinates, drag points + 1): by drag at each point, by what weighs 1 Nm about the hub without payload
+    beam_velocity: Matrix  # (drag points + 1, coordinates): of each point; the last row is empty
     signals: list[str]
 
 
@@ -146,7 +147,7 @@ def assemble(structure: Structure) -> LinearModel:
         stiffness[..., where[0], where[1]] += beam.stiffness[..., pick[0], pick[1]]
         damping[..., where[0], where[1]] += (spread_out(s.beam_damping) * beam.stiffness)[..., pick[0], pick[1]]
         tip = spread(beam.deflection_rows(beam.length[..., None], absolute=True))
-        mass += spread_out(s.tip_mass) * (turned(tip) * tip)
+        mass += spread_out(s.tip_mass + s.payload) * (turned(tip) * tip)
         turn = np.zeros(size)
         turn[0] = turn[-1] = 1.0
         mass += spread_out(s.tip_inertia) * np.outer(turn, turn)
@@ -164,8 +165,12 @@ def assemble(structure: Structure) -> LinearModel:
     _sensors(s, model, beam, spread, motor)
     if beam is not None:
         places, weights = beam.drag_points()
-        model.drag_velocity = spread(beam.deflection_rows(places, absolute=True))
-        model.drag_force = turned(weights[..., None] * model.drag_velocity)
+        rows = spread(beam.deflection_rows(places, absolute=True))
+        drag = turned(weights[..., None] * rows)
+        own, hung = (np.asarray(mass)[..., None] * tip[..., 0, :] for mass in (s.tip_mass, s.payload))
+        own = own + np.asarray(s.mass_per_length)[..., None] * drag.sum(axis=-1)
+        model.beam_velocity = np.concatenate([rows, np.zeros_like(rows[..., :1, :])], axis=-2)
+        model.beam_force = np.concatenate([drag, ((own + hung) / own[..., :1])[..., None]], axis=-1)
     return model
 
 
@@ -205,8 +210,8 @@ def _drive(s: Structure, names: list[str], motor: int, mass: Matrix, damping: Ma
         extra_from_input=np.zeros((*arms, extra, len(DRIVERS))),
         output=np.zeros((*arms, 0, 0)),
         output_from_input=np.zeros((*arms, 0, len(DRIVERS))),
-        drag_force=np.zeros((*arms, size, 0)),
-        drag_velocity=np.zeros((*arms, 0, size)),
+        beam_force=np.broadcast_to(np.eye(size, 1), (*arms, size, 1)),
+        beam_velocity=np.zeros((*arms, 1, size)),
         signals=[],
     )
     if lagged:

@@ -10,12 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.beam import Matrix, turned
+from flexarm_env.plant.beam import Matrix, spread_out, turned
 from flexarm_env.plant.modal import Mode, complete, mode_of
 from flexarm_env.plant.slide import DEPTH, table_size
 from flexarm_env.plant.structure import (
     DRIVERS,
-    GEAR_DAMPING_TIME,
     HUB_TORQUE,
     MOTOR_TORQUE,
     LinearModel,
@@ -34,6 +33,7 @@ LAW_LISTS = {
     "factor": at.FACTOR_LAWS,
     "presliding": at.PRESLIDING_LAWS,
     "torque": at.TORQUE_LAWS,
+    "weight": at.WEIGHT_LAWS,
     "drag": at.DRAG_LAWS,
     "drive": at.DRIVE_LAWS,
     "sensor": at.SENSOR_LAWS,
@@ -80,11 +80,11 @@ def pack(
             if not which >> body & 1:
                 complete(mode, modes[which | 1 << body], body, len(model.names) + body)
     varying = any(law.varies for law in active)
-    points = model.drag_force.shape[-1] if any(law.port == "drag" for law in active) else 0
+    points = _points(model, active)
     whole, early = split_delay(structure.input_delay, interval)
     n = np.zeros(at.COUNTS, dtype=np.int64)
     blocks = max(mode.c0.shape[-1] for mode in modes)
-    n[at.BODIES], n[at.COORDINATES], n[at.POINTS] = bodies, len(model.names), points
+    n[at.BODIES], n[at.COORDINATES], n[at.POINTS] = bodies, len(model.names), len(points)
     n[at.COUPLED] = bodies == 2 or np.any(np.not_equal(structure.hub_stiffness, 0.0))
     n[at.VARYING] = varying
     n[at.GLIDES] = 0 if varying else bodies
@@ -92,13 +92,13 @@ def pack(
     n[at.SIGNALS], n[at.STATES], n[at.DRIVERS] = len(model.signals), modes[0].physical.shape[-2], len(DRIVERS)
     n[at.MODES] = at.CONSTANTS
     reach = _size_of_tables(n)
-    records = [_record(model, mode, which, bodies, points, blocks, reach) for which, mode in enumerate(modes)]
+    records = [_record(structure, model, mode, which, points, blocks, reach) for which, mode in enumerate(modes)]
     place = 0
     for key, value in records[0].items():
         n[key] = place
         place += math.prod(value.shape[len(arms) :])
     n[at.STRIDE] = place
-    longest = LONGEST_STEP_WITH_DRAG if points else LONGEST_STEP if varying else np.inf
+    longest = LONGEST_STEP_WITH_DRAG if len(points) else LONGEST_STEP if varying else np.inf
     parts = np.zeros((*arms, 2))
     parts[..., 0], parts[..., 1] = early, interval - early
     steps = np.where(parts > 0.0, np.maximum(np.ceil(parts / longest - 1e-9), 1), 0)
@@ -118,12 +118,18 @@ def pack(
     d[..., at.TOLERANCE], d[..., at.INTERVAL], d[..., at.GEAR_RATIO] = TOLERANCE, interval, structure.gear_ratio
     d[..., at.EARLY_LENGTH], d[..., at.LATE_LENGTH] = lengths[..., 0], lengths[..., 1]
     d[..., at.LOAD_STIFFNESS] = structure.gear_stiffness
-    d[..., at.LOAD_DAMPING] = GEAR_DAMPING_TIME * structure.gear_stiffness
+    d[..., at.LOAD_DAMPING] = structure.gear_damping_time * structure.gear_stiffness
     d[..., at.LOAD_BY_COMMAND] = torque_by_command(structure)
     shares = np.array([[law.motor_share if bodies == 2 else 0.0 for law in own if law.port == "friction"] for own in laws])
     d[..., at.HUB_RUBS] = np.sum(1.0 - shares, axis=-1).reshape(arms)
     d[..., at.MOTOR_RUBS] = np.sum(shares, axis=-1).reshape(arms)
     return d, np.concatenate([n, np.array(named, dtype=np.int64)]), whole
+
+
+def _points(model: LinearModel, active: Sequence[ActiveLaw]) -> NDArray[np.intp]:
+    """Places among the forces on the beam of those that laws ask for: the drag at each point, and weight, the last."""
+    ports, last = {law.port for law in active}, model.beam_force.shape[-1] - 1
+    return np.arange(0 if "drag" in ports else last, last + 1 if "weight" in ports else last)
 
 
 def _size_of_tables(n: NDArray[np.int64]) -> int:
@@ -141,8 +147,10 @@ def split_delay(delay: ArrayLike, interval: float) -> tuple[int, Matrix]:
     return whole, np.where(rest > 1e-9 * interval, rest, 0.0)
 
 
-def _record(model: LinearModel, mode: Mode, which: int, bodies: int, points: int, blocks: int, reach: int) -> dict[int, Matrix]:
-    size = len(model.names)
+def _record(
+    structure: Structure, model: LinearModel, mode: Mode, which: int, points: NDArray[np.intp], blocks: int, reach: int
+) -> dict[int, Matrix]:
+    size, bodies = len(model.names), 2 if structure.separate_motor else 1
     torques = [HUB_TORQUE, MOTOR_TORQUE][:bodies]
     physical = _wide(mode.physical, blocks)
     arms = mode.c0.shape[:-1]
@@ -151,8 +159,8 @@ def _record(model: LinearModel, mode: Mode, which: int, bodies: int, points: int
     hold = _wide(mode.hold, blocks)
     angle, speed = physical[..., :bodies, :], physical[..., size : size + bodies, :]
     windup = angle[..., -1:, :] - angle[..., :1, :]
-    mesh = windup + GEAR_DAMPING_TIME * (speed[..., -1:, :] - speed[..., :1, :])
-    forces = np.concatenate([mode.forcing[..., torques], mode.drag_forcing[..., :points]], axis=-1)
+    mesh = windup + spread_out(structure.gear_damping_time) * (speed[..., -1:, :] - speed[..., :1, :])
+    forces = np.concatenate([mode.forcing[..., torques], mode.beam_forcing[..., points]], axis=-1)
     held_angles = np.array([float((which >> body) & 1) for body in range(bodies)])
     return {
         at.C0: c0,
@@ -175,8 +183,8 @@ def _record(model: LinearModel, mode: Mode, which: int, bodies: int, points: int
         at.HOLD: hold,
         at.HOLD_WEIGHT: _weights(hold, c0, c1),
         at.HOLD_DRIVERS: mode.hold_drivers,
-        at.HOLD_FORCES: np.concatenate([mode.hold_drivers[..., torques], mode.hold_drag[..., :points]], axis=-1),
-        at.DRAG_VELOCITY: model.drag_velocity[..., :points, :] @ physical[..., size : 2 * size, :],
+        at.HOLD_FORCES: np.concatenate([mode.hold_drivers[..., torques], mode.hold_beam[..., points]], axis=-1),
+        at.DRAG_VELOCITY: model.beam_velocity[..., points, :] @ physical[..., size : 2 * size, :],
         at.OUTPUT: model.output @ physical,
         at.OUTPUT_DRIVERS: model.output @ mode.held + model.output_from_input,
     }
