@@ -18,8 +18,9 @@ from flexarm_env.identify.screen import Base, candidates, screening_base, sized,
 #: The size is brought down by at most the first factor at once, and up by the second: an effect that only acts from some size
 #: on, as a limit does, shows nothing below. So many steps are taken before the last, and so many where only windows tell.
 LARGEST_STEP_DOWN, LARGEST_STEP_UP, STEPS, WINDOW_STEPS = 100.0, 3.0, 4, 2
-#: An effect raises the error in windows more than that of innovations, in which feedback hides it, by about this factor.
-IN_WINDOWS = 25.0
+#: Process noise of the innovations, over the rms of the drive's torque. An effect raises the error in windows more than theirs,
+#: in which feedback hides it, by about the factor.
+LEVEL, IN_WINDOWS = 0.01, 25.0
 #: A smaller size that leaves more than this share of a change hardly lowers it.
 STAYS = 0.7
 #: A change that is as good as none, and one of the size (a logarithm) that ends the steps.
@@ -59,7 +60,7 @@ def could_hide(found: Refit, data: Data, least: float, jobs: int = 1) -> dict[st
         least: excess error, as a variance over the noise's, from which an effect is accepted.
         jobs: processes.
     """
-    base = screening_base(found, data)
+    base = screening_base(found, data, (LEVEL,))
     before = brief_score(found.arm, data) ** 2
     names = [name for name in candidates(found.arm) if found.arm.known[name].fitted]
     sized = Parallel(n_jobs=jobs)(delayed(_hidden)(base, name, before, data, least) for name in names)

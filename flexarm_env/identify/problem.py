@@ -49,7 +49,7 @@ class Problem:
     held_out: bool = False
 
     def __post_init__(self) -> None:
-        self._gains: dict[tuple[float, int, int], Floats] = {}
+        self._gains: dict[tuple[float, tuple[str, ...], int, int], Floats] = {}
         self.prior = np.array([c.prior for c in self.coordinates])
 
     def weigh(self, arm: Arm, held: bool = True) -> None:
@@ -88,14 +88,19 @@ class Problem:
         errors = []
         for run in runs:
             plant = plants[run.payload]
-            gains = self._gains_for(plant, run.payload) if self.torque_noise > 0.0 else None
+            gains = self._gains_for(arm, plant, run.payload) if self.torque_noise > 0.0 else None
             errors.append(run.measured - replay(plant, run, self.data.noise, gains))
             if arm.constants["drive"]["torque_noise"] > 0.0:
                 errors[-1][: round(SETTLING / self.data.interval)] = 0.0
         return errors
 
-    def _gains_for(self, plant: Plant, payload: float) -> Floats:
-        key = (payload, plant.modes, plant.states)
+    def _gains_for(self, arm: Arm, plant: Plant, payload: float) -> Floats:
+        key = (
+            payload,
+            tuple(arm.effects),
+            plant.modes,
+            plant.states,
+        )  # the same while an arm's numbers are fitted, another for another arm
         if key not in self._gains:
             self._gains[key] = physical_gains(plant, self.data.noise, self.torque_noise, self.data.interval)
         return self._gains[key]

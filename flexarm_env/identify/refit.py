@@ -159,8 +159,13 @@ def put_back(found: Refit, nominal: Arm, strayed: float) -> Arm:
 
 def with_all(found: Refit, nominal: Arm, data: Data) -> Refit:
     """Return the refit gone on with on all of the data: what is kept once nothing is to be judged any more."""
-    whole = refit(found.arm, nominal, everything(data), (), LAST_ITERATIONS, held=False)
-    return replace(whole, moved=whole.solution.x - position(found.arm, whole.coordinates))
+    whole = everything(data)
+    problem = Problem(found.arm, whole, found.coordinates, found.problem.torque_noise, np.ones_like(found.problem.sigma))
+    problem.weigh(found.arm, held=False)
+    x = position(found.arm, found.coordinates)
+    solution = minimise(problem.residual, x, problem.prior, found.solution.reach, LAST_ITERATIONS, tolerance=AT_THE_END)
+    arm = place_values(found.arm, found.coordinates, solution.x)
+    return Refit(arm, found.coordinates, solution, problem, moved=solution.x - x)
 
 
 def at_solution(found: Refit) -> Refit:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,8 +28,9 @@ FEW, SMALL = 2, (0.03, 0.003)
 #: An effect that explains this share of what its secant promises grows in proportion; largest factor taken from a secant.
 LINEAR, LARGEST_FACTOR = 0.7, 10.0
 ITERATIONS = 4
-#: Process noise at which candidates are screened, over the rms of the drive's torque.
-SCREENING_LEVEL = 0.01
+#: Process noises at which candidates are screened, over the rms of the drive's torque: the largest at which the errors, rms over
+#: the noise, exceed VISIBLE. More hides a small steady torque, less makes the errors of a model that is far off rough.
+SCREENING_LEVELS, VISIBLE = (0.01, 0.003, 0.001, 0.0003), 1.5
 
 
 @dataclass(frozen=True)
@@ -63,11 +64,29 @@ class Trial:
     held_out: float
 
 
-def screening_base(found: Refit, data: Data) -> Base:
-    """Return the refitted arm's residual and Jacobian at the level at which candidates are screened."""
-    torque_noise = max(SCREENING_LEVEL * torque_scale(found.arm, data.runs), found.arm.constants["drive"]["torque_noise"])
-    problem = Problem(found.arm, data, found.coordinates, torque_noise, np.ones((len(data.runs), len(data.signals))))
-    problem.weigh(found.arm)
+def screening_bases(starts: Sequence[Refit], data: Data) -> list[Base]:
+    """Return bases that weigh errors alike, so that what is tried from one can be held against what is tried from another."""
+    bases = [screening_base(starts[0], data)]
+    for start in starts[1:]:
+        problem = replace(bases[0].problem, arm=start.arm)
+        problem.prior = bases[0].problem.prior
+        bases.append(_base(problem, start))
+    return bases
+
+
+def screening_base(found: Refit, data: Data, levels: Sequence[float] = SCREENING_LEVELS) -> Base:
+    """Return the refitted arm's residual and Jacobian at the first of the levels at which something is left to explain."""
+    scale, own = torque_scale(found.arm, data.runs), found.arm.constants["drive"]["torque_noise"]
+    for level in levels:
+        torque_noise = max(level * scale, own)
+        problem = Problem(found.arm, data, found.coordinates, torque_noise, np.ones((len(data.runs), len(data.signals))))
+        problem.weigh(found.arm)
+        if torque_noise == own or np.sqrt(np.mean((problem.sigma / data.noise) ** 2)) > VISIBLE:
+            break
+    return _base(problem, found)
+
+
+def _base(problem: Problem, found: Refit) -> Base:
     x = position(found.arm, found.coordinates)
     residual = problem.residual(x)
     slopes = jacobian(problem.residual, x, found.solution.reach.now)
@@ -205,7 +224,7 @@ def attempt(base: Base, signature: Signature | None) -> Trial:
 
 def refit_effect(effect: str, base: Refit, nominal: Arm, data: Data) -> Refit:
     """Return the refitted arm with an effect added and everything fitted again."""
-    bases = [screening_base(start, data) for start in (base, as_it_is(nominal, data))]
+    bases = screening_bases((base, as_it_is(nominal, data)), data)
     trials = [attempt(b, signature) for b in bases for signature in signatures(b, effect)]
     start = min(trials, key=lambda trial: trial.held_out).arm if trials else base.arm.with_effect(effect)
     return polish(refit(start, nominal, data), nominal, data)

@@ -30,7 +30,7 @@ from flexarm_env.identify.screen import (
     best_trials,
     candidates,
     first_start,
-    screening_base,
+    screening_bases,
     signatures,
 )
 
@@ -257,7 +257,7 @@ class Search:
                 self.ranking[trial.effect] = (float(np.clip(gain, 0.0, 1.0)), None)
 
     def _screen(self, done: float, share: float) -> list[Trial]:
-        bases = [screening_base(start, self.data) for start in self._starts()]
+        bases = screening_bases(self._starts(), self.data)
         names = candidates(self.found.arm)
         tasks = [delayed(_try_effect)(base, name) for name in names for base in bases]
         trials = [attempt(bases[0], None)]
