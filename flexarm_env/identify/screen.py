@@ -87,7 +87,7 @@ def screening_base(found: Refit, data: Data, levels: Sequence[float] = SCREENING
 
 
 def _base(problem: Problem, found: Refit) -> Base:
-    x = position(found.arm, found.coordinates)
+    x = position(found.arm, problem.coordinates)
     residual = problem.residual(x)
     slopes = jacobian(problem.residual, x, found.solution.reach.now)
     prior = np.diag(1.0 / problem.prior)

@@ -1,0 +1,58 @@
+"""What an effect explains of a residual, before anything is fitted."""
+
+from __future__ import annotations
+
+import pytest
+
+from flexarm_env import Arm, simulate
+from flexarm_env.identify.data import Data, prepare, torque_scale
+from flexarm_env.identify.refit import as_it_is
+from flexarm_env.identify.screen import SCREENING_LEVELS, Base, screening_base, screening_bases, signatures
+
+
+def seen_by(machine: Arm, model: Arm) -> tuple[Arm, Data]:
+    recordings = [simulate(machine, kind, duration=4.0, rate=200.0, seed=3) for kind in ("square", "pulse")]
+    return prepare(model, recordings)
+
+
+@pytest.fixture(scope="module")
+def arm() -> Arm:
+    return Arm.load("thesis-fem")
+
+
+def explained(base: Base, *names: str) -> list[float]:
+    return [sum(s.explained for s in signatures(base, name)) for name in names]
+
+
+def test_what_was_tried_before_does_not_matter(arm):
+    """Both add two states to the arm, and the feedback's gains for one do not suit the other."""
+    machine = arm.with_effect("strain_lag", time=0.003)
+    nominal, data = seen_by(machine, arm)
+    bases = [screening_base(as_it_is(nominal, data), data) for _ in range(2)]
+    alone = explained(bases[0], "strain_lag")[0]
+    assert alone > 0.5
+    assert explained(bases[1], "root_compliance", "strain_lag")[1] == alone
+
+
+def test_a_small_steady_torque_is_looked_for_where_feedback_does_not_hide_it(arm):
+    machine = arm.with_effect("base_tilt", torque=0.006, uphill=1.2)
+    nominal, data = seen_by(machine, arm)
+    found = as_it_is(nominal, data)
+    scale = torque_scale(nominal, data.runs)
+    hidden = screening_base(found, data, SCREENING_LEVELS[:1])
+    chosen = screening_base(found, data)
+    assert hidden.problem.torque_noise == pytest.approx(SCREENING_LEVELS[0] * scale)
+    assert chosen.problem.torque_noise < hidden.problem.torque_noise
+    assert explained(chosen, "base_tilt")[0] > 0.2
+    assert explained(hidden, "base_tilt")[0] < 0.02
+
+
+def test_errors_weigh_the_same_from_every_start(arm):
+    machine = arm.with_effect("stribeck", extra=0.05, falloff_speed=0.2)
+    nominal, data = seen_by(machine, arm)
+    other = as_it_is(nominal.with_values({"hub.inertia": 1.2 * nominal.value("hub.inertia")}), data)
+    first, second = screening_bases([as_it_is(nominal, data), other], data)
+    assert (second.problem.sigma == first.problem.sigma).all()
+    assert (second.problem.prior == first.problem.prior).all()
+    assert second.problem.torque_noise == first.problem.torque_noise
+    assert (second.residual != first.residual).any()
