@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 from joblib import Parallel, delayed
 
-from benchmarks.hidden_effects.cases import EXPERIMENTS, SIZES, STRENGTHS, Case, sizes
+from benchmarks.hidden_effects.cases import EXPERIMENTS, SIZES, STRENGTHS, Case, in_commands, sizes
 from benchmarks.hidden_effects.effects import CATALOGUE, OUTSIDE, Hidden
 from benchmarks.hidden_effects.machine import record
 from flexarm_env import Arm
@@ -28,7 +28,8 @@ LEAST = 0.05
 def strength_at(hidden: Hidden, size: float) -> float:
     """Return the excess error over the noise that the refitted constants leave, all constants but the effect being right."""
     middle = {key: 0.5 * (low + high) if low > -1.0 else 0.3 * high for key, (low, high) in hidden.others.items()}
-    case = Case("", "one", (), 0.0, {hidden.setting: size, **middle}, EXPERIMENTS[0], seed=1)
+    settings = in_commands(hidden, {hidden.setting: size, **middle}, EXPERIMENTS[0], seed=1)
+    case = Case("", "one", (), 0.0, settings, EXPERIMENTS[0], seed=1)
     arm, data = prepare(Arm.load("thesis-fem"), record(case))
     found = refit(arm, arm, data)
     error = min(score(found.arm, data).windows, score(arm, data).windows)

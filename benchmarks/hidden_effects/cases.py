@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.hidden_effects.effects import CATALOGUE, CONSTANTS, OUTSIDE, Hidden
+from benchmarks.hidden_effects.machine import Plan, largest_command
 
 SIZES = Path(__file__).parent / "sizes.json"
 STRENGTHS = (1.0, 3.0, 10.0)
@@ -21,8 +22,7 @@ WRONG = (0.0, 0.1, 0.3)
 NULLS, PAIRS = 60, 40
 #: By how much (a logarithm) sizes scatter around those of their strength.
 SCATTER = 0.2
-#: What the runs of a case are: the rig's experiments, the factor on the controller's gains, and a known payload [kg].
-EXPERIMENTS = (
+EXPERIMENTS: tuple[tuple[Plan, ...], ...] = (
     (("pulse", 1.0, 0.0), ("square", 1.0, 0.0), ("sweep", 1.0, 0.0)),
     (("pulse", 1.0, 0.0), ("square", 0.6, 0.0), ("sweep", 1.5, 0.0)),
     (("pulse", 1.0, 0.0), ("square", 1.0, 0.15), ("sweep", 1.0, 0.0)),
@@ -48,7 +48,7 @@ class Case:
     effects: tuple[str, ...]
     strength: float
     settings: dict[str, float]
-    runs: tuple[tuple[str, float, float], ...]
+    runs: tuple[Plan, ...]
     seed: int
 
     def as_json(self) -> dict[str, Any]:
@@ -71,7 +71,8 @@ def stream(seed: int, name: str) -> np.random.Generator:
 def settings_of(hidden: Hidden, size: float, draw: np.random.Generator) -> dict[str, float]:
     """Return the rig's settings for an effect of a size."""
     sign = draw.choice([-1.0, 1.0]) if hidden.signed else 1.0
-    size *= float(np.exp(draw.uniform(-SCATTER, SCATTER)))
+    scatter = float(np.exp(draw.uniform(-SCATTER, SCATTER)))
+    size = 1.0 - (1.0 - size) * scatter if hidden.of_peak else size * scatter
     others = {key: float(draw.uniform(*limits)) for key, limits in sorted(hidden.others.items())}
     return {hidden.setting: float(sign * size), **others}
 
@@ -87,7 +88,18 @@ def _case(seed: int, name: str, kind: str, effects: tuple[str, ...], strength: f
         factor = float(1.0 + draw.uniform(-wrong, wrong))
         settings |= {f"{name}_x": factor for name in names}
     runs = EXPERIMENTS[draw.integers(len(EXPERIMENTS))]
-    return Case(name, kind, effects, strength, settings, runs, int(draw.integers(2**31)))
+    own_seed = int(draw.integers(2**31))
+    for effect in effects:
+        settings = in_commands(known[effect], settings, runs, own_seed)
+    return Case(name, kind, effects, strength, settings, runs, own_seed)
+
+
+def in_commands(hidden: Hidden, settings: dict[str, float], runs: tuple[Plan, ...], seed: int) -> dict[str, float]:
+    """Return the rig's settings with an effect's share of the largest command turned into a command [A], if it is one."""
+    if not hidden.of_peak:
+        return settings
+    without = {key: value for key, value in settings.items() if key != hidden.setting}
+    return without | {hidden.setting: settings[hidden.setting] * largest_command(without, runs, seed)}
 
 
 def cases(seed: int) -> list[Case]:

@@ -19,6 +19,7 @@ class Hidden:
         others: the rig's other settings, each drawn evenly from its range.
         signed: whether its size has either sign.
         inverse: whether a smaller setting is a stronger effect.
+        of_peak: whether sizes are shares of the largest command that the machine would get without it.
     """
 
     setting: str
@@ -26,6 +27,7 @@ class Hidden:
     others: Ranges = field(default_factory=dict)
     signed: bool = False
     inverse: bool = False
+    of_peak: bool = False
 
 
 PHASE = (-math.pi, math.pi)
@@ -53,7 +55,7 @@ CATALOGUE = {
     "current_lag": Hidden("lag", 0.2),
     "input_delay": Hidden("delay", 0.1),
     "dead_zone": Hidden("dead", 0.5),
-    "saturation": Hidden("sat", 0.5, inverse=True),
+    "saturation": Hidden("sat", 0.1, inverse=True, of_peak=True),
     "rate_limit": Hidden("rate", 4.0, inverse=True),
     "brush_drop": Hidden("brush", 0.7),
     "tach_filter": Hidden("tachlag", 0.3),

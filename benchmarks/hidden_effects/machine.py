@@ -2,21 +2,38 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from benchmarks.hidden_effects.cases import Case
 from flexarm_env import Recording
 from tests.rig import SIGNALS, simulate
+
+if TYPE_CHECKING:
+    from benchmarks.hidden_effects.cases import Case
+
+#: What a run of a case is: the rig's experiment, the factor on the controller's gains, and a known payload [kg].
+Plan = tuple[str, float, float]
 
 
 def record(case: Case) -> list[Recording]:
     """Return the recordings of a case, rounded as a file has them."""
-    return [_run(case, *run) for run in case.runs]
+    return [_recorded(case.settings, run, case.seed) for run in case.runs]
 
 
-def _run(case: Case, experiment: str, gains: float, payload: float) -> Recording:
-    settings = case.settings | {"pd": gains, "payload": case.settings.get("payload", 0.0) + payload}
-    made = simulate(settings, experiment, case.seed)
+def largest_command(settings: Mapping[str, float], runs: tuple[Plan, ...], seed: int) -> float:
+    """Return the largest command [A] that a machine gets in its runs."""
+    return max(float(np.abs(_played(settings, run, seed)["current"]).max()) for run in runs)
+
+
+def _played(settings: Mapping[str, float], run: Plan, seed: int) -> dict[str, np.ndarray]:
+    experiment, gains, payload = run
+    return simulate({**settings, "pd": gains, "payload": settings.get("payload", 0.0) + payload}, experiment, seed)
+
+
+def _recorded(settings: Mapping[str, float], run: Plan, seed: int) -> Recording:
+    made, (experiment, _, payload) = _played(settings, run, seed), run
     signals = {name: np.round(made[name], 5) for name in SIGNALS}
     known = {"payload": payload} if payload else {}
     return Recording.from_arrays(experiment, made["time"], "current", np.round(made["current"], 5), signals, conditions=known)
