@@ -63,12 +63,22 @@ def diagnose(
 def _verdict(search: Search, before: Score, first: Score) -> str:
     measure = measure_of([search.best])
     total = 1.0 - measure(search.best) / measure(first)
-    if search.accepted and (total >= LEAST_TOTAL_GAIN or search.best.windows <= WHOLE):
+    if search.accepted and (total >= LEAST_TOTAL_GAIN or search.best.windows <= WHOLE) and _lasts(search, first):
         return "effects"
     if first.windows > WHOLE:
         return "unknown"
     needed = excess(before.windows) > 1.5 * excess(first.windows) and before.windows > PERFECT
     return "parameters" if needed else "nothing_missing"
+
+
+def _lasts(search: Search, first: Score) -> bool:
+    """Whether what was found explains whole runs, too, as the true effect does, not only the seconds that it was fitted to.
+
+    Where torque noise is stated, no free run says anything.
+    """
+    before, after = excess(first.free_run), excess(search.best.free_run)
+    known = search.nominal.constants["drive"]["torque_noise"] == 0.0
+    return not known or search.best.free_run <= WHOLE or after <= (1.0 - LEAST_TOTAL_GAIN) * before
 
 
 def _conclude(

@@ -30,6 +30,7 @@ from flexarm_env.identify.screen import (
     best_trials,
     candidates,
     first_start,
+    screening_base,
     screening_bases,
     signatures,
 )
@@ -50,7 +51,8 @@ LEAST_GAIN, LEAST_TOTAL_GAIN = 0.25, 0.5
 #: Excess error, as a variance over the noise's, that an effect must remove at least, and as a share of that of the refitted
 #: constants: what is left of a large error comes from fits that end early, too.
 LEAST_REMOVED, LEAST_OF_FIRST = 0.2, 1e-3
-OFFSET = "constant_torque"
+#: Share of the residual that a constant torque's signature must explain beside an effect for the two to be fitted together.
+OFFSET, LEAST_OFFSET = "constant_torque", 0.01
 MOST_EFFECTS = 3
 #: Two effects are equivalent if the excess error that they leave differs by less than the first share of what they remove, and
 #: by less than one of them leaves, or the second, whichever is more.
@@ -231,7 +233,9 @@ class Search:
         """Return the hypotheses with a constant torque beside each: alone it hides what friction explains, and it them."""
         if OFFSET in self.found.arm.effects:
             return []
-        pairs = [h for h in found if h.effects != (OFFSET,)]
+        others = [h for h in found if h.effects != (OFFSET,)]
+        asks = self._parallel([delayed(_asks_for_offset)(h.refit, self.data) for h in others])
+        pairs = [h for h, share in zip(others, asks, strict=True) if share > LEAST_OFFSET]
         arms = [h.refit.arm.with_effect(OFFSET, torque=0.0) for h in pairs]
         far = min(h.score.windows for h in found) > FAR_OFF
         return self._refit_all([(*h.effects, OFFSET) for h in pairs], arms, done, share, thorough=far)
@@ -341,6 +345,11 @@ def _refit_arm(effects: tuple[str, ...], arm: Arm, nominal: Arm, data: Data, tho
     if thorough:
         found = or_from_nominal(found, nominal, data)
     return Hypothesis(effects, found, score(found.arm, data))
+
+
+def _asks_for_offset(found: Refit, data: Data) -> float:
+    """Return the share of what a refit leaves that looks like a constant torque."""
+    return sum(signature.explained for signature in signatures(screening_base(found, data), OFFSET))
 
 
 def _fit_briefly(arm: Arm, nominal: Arm, data: Data) -> tuple[float, Refit]:
