@@ -96,9 +96,11 @@ class Arm(Shown):
             raise InputError(f"effect '{effect.name}' needs {' and '.join(missing)}, which arm '{self.name}' does not have")
 
     def has(self, need: str) -> bool:
-        """Whether the arm has a beam, a motor with an inertia of its own, a sensor or an input of that name."""
+        """Whether the arm has a beam, a motor or a hub with an inertia of its own, a sensor or an input of that name."""
         if need == "motor_inertia":
             return self.constants["drive"]["motor_inertia"] > 0.0
+        if need == "hub_inertia":
+            return self.constants["hub"]["inertia"] > 0.0 or "beam" in self.constants
         if need in INPUTS:
             return need == self.input
         return need in self.constants if need == "beam" else need in self.sensors

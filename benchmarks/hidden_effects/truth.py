@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 GEAR = 1.5
+#: Half of the beam's weight at its density in the model, times its length of 1 m [Nm]; damping of the rig's gears [Nms].
+HALF_WEIGHT, GEAR_DAMPING = 9.81 * 0.42381 / 2.0, 2.0
 
 #: effect -> parameter -> the rig's settings in its units
 PARAMETERS: dict[str, dict[str, Callable[[dict[str, float]], float]]] = {
@@ -19,6 +21,8 @@ PARAMETERS: dict[str, dict[str, Callable[[dict[str, float]], float]]] = {
     "presliding": {"compliance": lambda s: 1.0 / s["dahl"]},
     "constant_torque": {"torque": lambda s: s["bias"]},
     "cable_stiffness": {"stiffness": lambda s: s["cable"], "rest_angle": lambda s: s["cable0"]},
+    "base_tilt": {"torque": lambda s: math.sin(s["tilt"]) * HALF_WEIGHT * s.get("density_x", 1.0)},
+    "gear_compliance": {"stiffness": lambda s: s["gearc"], "damping_time": lambda s: GEAR_DAMPING / s["gearc"]},
     "cogging": {"amplitude": lambda s: GEAR * s["cog"], "cycles": lambda s: GEAR * s["cogn"]},
     "backlash": {"gap": lambda s: s["gap"]},
     "beam_damping": {"time": lambda s: s["beam_damp"]},

@@ -18,7 +18,7 @@ class Backlash(Effect):
     looks_like = "at each reversal the motor runs free for a moment, then jolts; speed and strain ring where the gears meet"
     confused_with = ("gear_compliance", "input_delay")
     source = "thesis section 2.1; Nordin and Gutman, Automatica 38 (2002) 1633"
-    needs = ("motor_speed", "motor_inertia")
+    needs = ("motor_speed", "motor_inertia", "hub_inertia")
 
     @staticmethod
     def structure(structure: Structure, gap: float) -> None:

@@ -41,7 +41,8 @@ class Effect:
         motor_share: the constant of the drive that says which part of its friction acts on the motor; "" for none.
         reads: the signals that its sensor port changes, those of them that the arm has.
         modifies: the effect that it changes and without which it is no candidate, "" for none.
-        needs: what the arm must have: "beam", "motor_inertia", names of signals, or its input, "current" or "voltage".
+        needs: what the arm must have: "beam", "motor_inertia", "hub_inertia" (or a beam), names of signals, or its input,
+            "current" or "voltage".
         fitted: whether its parameters can be fitted (a count cannot).
     """
 

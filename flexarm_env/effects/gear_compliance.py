@@ -22,7 +22,7 @@ class GearCompliance(Effect):
     looks_like = "motor speed leads the arm by a fast vibration of its own"
     confused_with = ("backlash", "root_compliance", "higher_modes")
     source = "Spong, J. Dyn. Syst. Meas. Control 109 (1987) 310"
-    needs = ("motor_speed", "motor_inertia")
+    needs = ("motor_speed", "motor_inertia", "hub_inertia")
 
     @staticmethod
     def structure(structure: Structure, stiffness: float, damping_time: float) -> None:

@@ -15,6 +15,7 @@ from flexarm_env.identify.load import check_load, loaded_plants, payload_of
 from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.start import Start, find_start, place_at_start
 from flexarm_env.plant.plant import NO_INTERVALS, Plant
+from flexarm_env.plant.structure import assemble
 from flexarm_env.signals import INPUTS
 
 Floats = NDArray[np.float64]
@@ -126,12 +127,23 @@ def prepare(arm: Arm, recordings: Sequence[Recording]) -> tuple[Arm, Data]:
 
 
 def torque_scale(arm: Arm, runs: Sequence[Run]) -> float:
-    """Return the rms of the torque that the command gives at the hub [Nm]."""
+    """Return the rms of the torque that the command gives at the hub [Nm]; without any, of what slows down an arm that coasts."""
     drive = arm.constants["drive"]
     per_command = drive["gear_ratio"] * drive["torque_constant"]
     if arm.input == "voltage":
         per_command /= drive["resistance"]
-    return per_command * max(float(np.sqrt(np.mean([np.mean(run.command**2) for run in runs]))), 1e-9)
+    command = float(np.sqrt(np.mean([np.mean(run.command**2) for run in runs])))
+    return max(per_command * command, 0.0 if command > 0.0 else _slowing_torque(arm, runs), 1e-9 * per_command)
+
+
+def _slowing_torque(arm: Arm, runs: Sequence[Run]) -> float:
+    """Return the largest mean torque [Nm] that the change of the motor's speed over a run takes; 0 where nothing shows it."""
+    if "motor_speed" not in arm.signals:
+        return 0.0
+    structure = arm.structure()
+    inertia = float(np.trace(assemble(structure).mass[:2, :2])) if structure.separate_motor else assemble(structure).mass[0, 0]
+    tach = arm.signals.index("motor_speed")
+    return float(inertia / structure.gear_ratio * max(np.ptp(run.measured[:, tach]) / run.time[-1] for run in runs))
 
 
 def _scales(arm: Arm, runs: Sequence[Run], signals: Sequence[str]) -> dict[str, float]:

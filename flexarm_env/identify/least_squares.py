@@ -156,7 +156,8 @@ def covariance(j: Floats, residual: Floats, prior: Floats, block: int) -> Floats
     Econometrica 55 (1987) 703, with blocks for lags).
     """
     bread = np.linalg.inv(j.T @ j + np.diag(prior**-2.0))
-    count = max(len(residual) // block, 1)
+    block = min(block, len(residual))
+    count = len(residual) // block
     rows = residual[: count * block, None] * j[: count * block]
     sums = rows.reshape(count, block, -1).sum(axis=1)
     meat = sums.T @ sums + np.diag(prior**-2.0)

@@ -24,7 +24,11 @@ def preflight(arm: Arm, data: Data) -> tuple[list[str], bool]:
         if at_limit.mean() > 0.3 and np.ptp(run.command) > 0.0 and len(np.unique(run.command)) > 4:
             notes.append(f"{run.name}: the command stands at its limit {100 * at_limit.mean():.0f} % of the time")
     length = sum(run.time[-1] for run in data.runs)
-    motion = max(float((np.ptp(run.measured, axis=0) / data.noise).max()) for run in data.runs)
+    turns = np.array([signal == "motor_speed" for signal in data.signals])  # steadily, too
+    motion = max(
+        float((np.where(turns, np.abs(run.measured).max(axis=0), np.ptp(run.measured, axis=0)) / data.noise).max())
+        for run in data.runs
+    )
     if length < SHORTEST:
         notes.append(f"only {length:.2g} s of data: record at least 5 s with several starts and stops")
     if motion < LEAST_MOTION:

@@ -21,6 +21,8 @@ SIGNIFICANT, RESTS = 6.0, 3.0
 FIRST_SAMPLES, FIRST_TIME = 20, 0.004
 #: Longest stretch [s] to which the state at the start is fitted: of a held hub, of a moving one.
 LONGEST_HELD, LONGEST_MOVING = 0.5, 0.15
+#: And at least so many samples, however far apart.
+FEWEST = 3
 ITERATIONS, STEP = 3, 1e-4
 #: Modes of the beam that may vibrate, and the size expected of the faster ones over that of the first.
 MODES, FASTER_MODES = 4, 0.3
@@ -64,7 +66,7 @@ def find_start(time: Floats, measured: Floats, signals: list[str], noise: Floats
     else:
         first = measured[: max(2, int(FIRST_TIME / interval))].mean(axis=0)
         vibrating = bool(np.any((np.abs(first) > SIGNIFICANT * noise)[beam]))
-    longest = int((LONGEST_HELD if held else LONGEST_MOVING) / interval)
+    longest = max(int((LONGEST_HELD if held else LONGEST_MOVING) / interval), FEWEST)
     samples = min(longest, still) if held else min(longest, len(time))
     return Start(angle, speed, moving, vibrating, samples)
 
@@ -72,7 +74,7 @@ def find_start(time: Floats, measured: Floats, signals: list[str], noise: Floats
 def _hub(time: Floats, measured: Floats, signals: list[str], noise: Floats) -> tuple[float, float, int]:
     """Angle and speed of the hub at the start, and for how many samples it is still."""
     if "arm_angle" not in signals:
-        return 0.0, 0.0, 0
+        return 0.0, _speed_alone(measured, signals, noise), 0
     column = signals.index("arm_angle")
     angle, sigma = measured[:, column], noise[column]
     leaves = np.abs(angle - angle[:3].mean()) > STILL * sigma
@@ -90,6 +92,16 @@ def _hub(time: Floats, measured: Floats, signals: list[str], noise: Floats) -> t
             return float(fit[2]), float(fit[1]), 0
     at_zero = abs(angle[:3].mean()) < 4.0 * sigma
     return 0.0 if at_zero else float(angle[: max(still // 2, 3)].mean()), 0.0, still
+
+
+def _speed_alone(measured: Floats, signals: list[str], noise: Floats) -> float:
+    """Speed at the start where nothing shows the hub's angle; the motor's, until the rest is fitted."""
+    if "motor_speed" not in signals:
+        return 0.0
+    tach = signals.index("motor_speed")
+    first = float(measured[:3, tach].mean())
+    rests = abs(measured[0, tach]) < RESTS * noise[tach] or abs(first) < SIGNIFICANT * noise[tach]
+    return 0.0 if rests else first
 
 
 def place_at_start(plant: Plant, start: Start, command: Floats, intervals: Floats, measured: Floats, noise: Floats) -> None:

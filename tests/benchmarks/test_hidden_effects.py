@@ -49,6 +49,12 @@ def test_a_seed_gives_the_same_cases_and_another_others():
     assert all(a.settings != b.settings for a, b in zip(cases(1), cases(2), strict=True) if a.kind in ("one", "outside"))
 
 
+def test_a_saturation_is_below_the_largest_command():
+    case = next(c for c in cases(1) if c.effects == ("saturation",))
+    commands = [np.abs(run.command).max() for run in record(case)]
+    assert max(commands) > case.settings["sat"]
+
+
 def test_every_effect_is_in_the_catalogue():
     assert set(CATALOGUE) <= set(catalogue())
     for effect in set(CATALOGUE) & set(truth.PARAMETERS):

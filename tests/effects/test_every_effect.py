@@ -81,7 +81,7 @@ def test_it_says_what_it_is(name):
         assert text
         assert text.strip()
     assert set(effect.confused_with) <= set(NAMES) - {name}
-    assert set(effect.needs) <= {"beam", "motor_inertia", *SIGNALS, *INPUTS}
+    assert set(effect.needs) <= {"beam", "motor_inertia", "hub_inertia", *SIGNALS, *INPUTS}
     assert set(effect.reads) <= set(SIGNALS)
     assert bool(effect.reads) == (effect.port("sensor") is not None)
 

@@ -1,0 +1,42 @@
+"""What a search's errors make of a verdict."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+
+from flexarm_env import Arm
+from flexarm_env.identify.diagnose import _verdict
+from flexarm_env.identify.problem import Score
+
+
+def verdict(before: Score, first: Score, best: Score, accepted: list[str], arm: str = "thesis") -> str:
+    return _verdict(SimpleNamespace(best=best, accepted=accepted, nominal=Arm.load(arm)), before, first)
+
+
+BEFORE, FIRST = Score(20.0, 60.0), Score(3.0, 12.0)
+
+
+@pytest.mark.parametrize(
+    ("best", "accepted", "said"),
+    [
+        (Score(1.01, 1.03), ["backlash"], "effects"),
+        (Score(1.18, 1.19), ["backlash"], "effects"),
+        (Score(1.3, 6.0), ["backlash"], "effects"),  # not whole, but most of both errors is gone
+        (Score(1.1, 11.0), ["friction_warmup"], "unknown"),  # explains the seconds that it was fitted to, no whole run
+        (Score(2.6, 2.8), ["cogging"], "unknown"),
+        (FIRST, [], "unknown"),
+    ],
+)
+def test_an_effect_is_named_if_it_explains_windows_and_whole_runs(best, accepted, said):
+    assert verdict(BEFORE, FIRST, best, accepted) == said
+
+
+def test_a_free_run_says_nothing_where_noise_drives_the_arm():
+    assert verdict(BEFORE, FIRST, Score(1.0, 11.0), ["asymmetric_viscous"], "emps") == "effects"
+
+
+def test_constants_are_blamed_where_nothing_else_is_left():
+    assert verdict(BEFORE, Score(1.0, 1.0), Score(1.0, 1.0), []) == "parameters"
+    assert verdict(Score(1.0, 1.0), Score(1.0, 1.0), Score(1.0, 1.0), []) == "nothing_missing"
