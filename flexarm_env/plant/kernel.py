@@ -328,6 +328,8 @@ def feed_back(
         for body in range(n[BODIES]):
             if is_stuck(mode, body):
                 s[HELD_HUB + body] += gains[mode, size + body, j] * error
+    if preslides(n, 0):  # a correction is no motion, against which friction would build up
+        s[KNOWN_ANGLE] = angle_of(d, n, s, mode, 0, s, HEADER)
 
 
 @njit(forceinline=True)
