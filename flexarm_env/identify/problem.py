@@ -95,12 +95,8 @@ class Problem:
         return errors
 
     def _gains_for(self, arm: Arm, plant: Plant, payload: float) -> Floats:
-        key = (
-            payload,
-            tuple(arm.effects),
-            plant.modes,
-            plant.states,
-        )  # the same while an arm's numbers are fitted, another for another arm
+        # the same gains while an arm's numbers are fitted, others for another arm
+        key = (payload, tuple(arm.effects), plant.modes, plant.states)
         if key not in self._gains:
             self._gains[key] = physical_gains(plant, self.data.noise, self.torque_noise, self.data.interval)
         return self._gains[key]

@@ -115,19 +115,20 @@ def place_at_start(plant: Plant, start: Start, command: Floats, intervals: Float
         measured: (samples, signals).
         noise: (signals,) standard deviations.
     """
+    before = float(command[0]) if start.moving else 0.0  # an arm at rest was not driven: what lags behind commands begins there
     state = np.zeros(plant.states)
     hub, modes = _hub_directions(plant), _mode_directions(plant) if start.vibrating else []
     state += np.array([start.angle, start.speed]) @ hub
     basis = [*(hub if start.moving else []), *(modes[0] if modes else [])]
     if basis:
-        stretch = _Stretch(plant, command[: start.samples], intervals[: start.samples], measured[: start.samples], noise)
+        stretch = _Stretch(plant, command[: start.samples], intervals[: start.samples], measured[: start.samples], noise, before)
         state, sizes = stretch.fit(state, np.array(basis), np.zeros(len(basis)))
         if len(modes) > 1:
             least = max(float(np.linalg.norm(sizes[-2:])), 1e-12)
             faster = np.concatenate(modes[1:])
             weights = np.array([0.0] * len(basis) + [1.0 / (FASTER_MODES * least)] * len(faster))
             state, _ = stretch.fit(state, np.array([*basis, *faster]), weights)
-    plant.place(state, command=float(command[0]))
+    plant.place(state, before)
 
 
 def _hub_directions(plant: Plant) -> Floats:
@@ -155,13 +156,15 @@ def _mode_directions(plant: Plant) -> list[Floats]:
 class _Stretch:
     """The first samples of a recording, to which a plant's state is fitted."""
 
-    def __init__(self, plant: Plant, command: Floats, intervals: Floats, measured: Floats, noise: Floats) -> None:
+    def __init__(
+        self, plant: Plant, command: Floats, intervals: Floats, measured: Floats, noise: Floats, before: float
+    ) -> None:
         self.plant, self.command, self.intervals, self.measured = plant, command, intervals, measured
-        self.sigma = noise
+        self.sigma, self.before = noise, before
 
     def residual(self, state: Floats) -> Floats:
         """Return the error of every reading over its standard deviation (rows,)."""
-        self.plant.place(state, command=float(self.command[0]))
+        self.plant.place(state, self.before)
         readings = self.plant.replay(self.command, self.intervals, NO_GAINS, NOT_MEASURED)
         return np.nan_to_num((readings - self.measured) / self.sigma, nan=1e6, posinf=1e6, neginf=-1e6).ravel()
 

@@ -58,6 +58,8 @@ def blocks_of(dynamics: Matrix) -> tuple[Matrix, Matrix, Matrix, Matrix]:
 def _blocks_of_one(dynamics: bytes, size: int) -> tuple[Matrix, Matrix, Matrix, Matrix]:
     """Return the blocks of one arm: fits try many that differ in what leaves its dynamics alone."""
     c0, c1, v, w = (stack[0] for stack in blocks_of(np.frombuffer(dynamics).reshape(1, size, size)))
+    for kept in (c0, c1, v, w):
+        kept.flags.writeable = False
     return c0, c1, v, w
 
 

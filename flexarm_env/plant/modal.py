@@ -79,8 +79,8 @@ def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
     force[..., 2 * positions :, :] = model.extra_from_input
     for column, place in held:
         force[..., 2 * positions :, column] += into_extra[..., place]
-    drag = np.zeros((*arms, states, model.beam_force.shape[-1]))
-    drag[..., rows, :] = answer @ model.beam_force
+    along = np.zeros((*arms, states, model.beam_force.shape[-1]))
+    along[..., rows, :] = answer @ model.beam_force
     bodies = 2 if "motor" in model.names else 1
     resist = np.zeros((*arms, bodies, states))
     resist[..., 2 * positions :] = model.from_extra[..., :bodies, :]
@@ -95,10 +95,10 @@ def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
         held=frame.at_hold,
         modal=w @ frame.pick,
         forcing=w @ force,
-        beam_forcing=w @ drag,
+        beam_forcing=w @ along,
         hold=resist @ v,
         hold_drivers=drivers[..., :bodies, :] - inertial @ force[..., rows, :],
-        hold_beam=model.beam_force[..., :bodies, :] - inertial @ drag[..., rows, :],
+        hold_beam=model.beam_force[..., :bodies, :] - inertial @ along[..., rows, :],
     )
 
 

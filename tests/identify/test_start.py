@@ -7,6 +7,7 @@ import pytest
 
 from flexarm_env import Arm, Recording, compare, simulate
 from flexarm_env.identify.start import find_start
+from flexarm_env.thesis.arms import motor_alone
 
 PULSE_ENDS = 1.0  # [s], of simulate's first pulse
 NOISE = np.array([2e-3, 0.03, 1e-2, 1e-2])
@@ -55,3 +56,24 @@ def test_an_offset_of_a_gage_is_no_vibration() -> None:
     assert start.angle == pytest.approx(0.5, abs=1e-3)
     assert not start.moving
     assert not start.vibrating
+
+
+@pytest.mark.parametrize(("effect", "value"), [("input_delay", {"delay": 0.003}), ("rate_limit", {"rate": 300.0})])
+def test_no_command_acts_before_the_first_where_the_arm_rests(effect, value) -> None:
+    """At rest, a first command of 2 A was not there before: what is late meets the arm late."""
+    arm = Arm.load("thesis").with_effect(effect, **value)
+    current = np.concatenate([np.full(150, 2.0), np.zeros(250)])
+    times = 0.005 * np.arange(len(current))
+    given = Recording.from_arrays("push", times, "current", current, {}, measured=False)
+    assert error(arm, simulate(arm, given)) < 1.2
+
+
+def test_a_tachometer_alone_shows_that_the_arm_moves_at_the_start() -> None:
+    arm = motor_alone()
+    assert error(arm, cut(simulate(arm, "pulse", duration=3.0), 0.9, ["motor_speed"])) < 1.5
+
+
+def test_a_start_is_found_however_slow_the_sampling() -> None:
+    arm = Arm.load("cu-rigid")
+    slow = simulate(arm, "square", duration=30.0, rate=4.0)
+    assert np.isfinite(error(arm, cut(slow, 3.0, ["motor_speed"] if "motor_speed" in arm.signals else ["arm_angle"])))
