@@ -29,8 +29,8 @@ Progress = Callable[[float, str], None]
 LEVELS = (0.03, 0.003, 0.0003)
 #: A refit whose error on the fitted part is below this is done.
 WELL = 1.1
-#: Error in windows above which a model is far off, and how often one that stays so is refitted once more.
-FAR_OFF, MOST_AGAIN = 3.0, 4
+#: Error in windows above which a model is far off, how often one that stays so is refitted once more, and what counts as near.
+FAR_OFF, MOST_AGAIN, NEAR = 3.0, 4, (1.03, 1.4)
 #: Relative decrease of the cost at which a level is left, and at which the last one is.
 ON_THE_WAY, AT_THE_END = 1e-2, 1e-4
 #: Passes at the end: the first weighs the signals by errors that it then removes, the last goes by narrow differences.
@@ -116,18 +116,21 @@ def best_refit(nominal: Arm, data: Data) -> Refit:
 def polish(found: Refit, nominal: Arm, data: Data) -> Refit:
     """Return a refit as far as it goes, from where it ended or from the nominal constants.
 
-    Where the model stays far off, the error is so rough that one more refit may end at half of it.
+    Where the model stays far off, the error is so rough that one more refit may end at half of it; where little is left, as with
+    play between gears, one more may end at the noise.
     """
     found = or_from_nominal(found, nominal, data)
     now = score(found.arm, data, held_out=False)
-    for _ in range(MOST_AGAIN):
-        if now.windows < FAR_OFF:
+    near = NEAR[0] < now.windows < NEAR[1]
+    for levels in (LEVELS, LEVELS[-1:]) if near else (LEVELS,) * MOST_AGAIN:
+        if not near and now.windows < FAR_OFF:
             break
-        other = refit(found.arm, nominal, data)
+        other = refit(found.arm, nominal, data, levels)
         then = score(other.arm, data, held_out=False)
-        if then.windows * then.free_run >= now.windows * now.free_run:
+        if then.windows * then.free_run < now.windows * now.free_run:
+            found, now = other, then
+        elif not near:
             break
-        found, now = other, then
     return found
 
 
