@@ -156,9 +156,7 @@ def _mode_directions(plant: Plant) -> list[Floats]:
 class _Stretch:
     """The first samples of a recording, to which a plant's state is fitted."""
 
-    def __init__(
-        self, plant: Plant, command: Floats, intervals: Floats, measured: Floats, noise: Floats, before: float
-    ) -> None:
+    def __init__(self, plant: Plant, command: Floats, intervals: Floats, measured: Floats, noise: Floats, before: float) -> None:
         self.plant, self.command, self.intervals, self.measured = plant, command, intervals, measured
         self.sigma, self.before = noise, before
 
