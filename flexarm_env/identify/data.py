@@ -140,9 +140,9 @@ def _slowing_torque(arm: Arm, runs: Sequence[Run]) -> float:
     """Return the largest mean torque [Nm] that the change of the motor's speed over a run takes; 0 where nothing shows it."""
     if "motor_speed" not in arm.signals:
         return 0.0
-    structure = arm.structure()
-    inertia = float(np.trace(assemble(structure).mass[:2, :2])) if structure.separate_motor else assemble(structure).mass[0, 0]
-    tach = arm.signals.index("motor_speed")
+    structure, tach = arm.structure(), arm.signals.index("motor_speed")
+    bodies = 2 if structure.separate_motor else 1
+    inertia = np.trace(assemble(structure).mass[:bodies, :bodies])
     return float(inertia / structure.gear_ratio * max(np.ptp(run.measured[:, tach]) / run.time[-1] for run in runs))
 
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 from flexarm_env.arm import Arm, short_name
 from flexarm_env.identify.data import Data, prepare
 from flexarm_env.identify.hiding import could_hide
+from flexarm_env.identify.hypothesis import excess, measure_of
 from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.next_run import propose
 from flexarm_env.identify.origin import with_origin
@@ -17,7 +18,7 @@ from flexarm_env.identify.problem import Score, score
 from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.refit import Progress, best_refit, estimates, with_all
 from flexarm_env.identify.results import Candidate, Diagnosis
-from flexarm_env.identify.search import LEAST_REMOVED, LEAST_TOTAL_GAIN, PERFECT, Search, excess, measure_of
+from flexarm_env.identify.search import LEAST_REMOVED, LEAST_TOTAL_GAIN, PERFECT, Search
 
 #: A model whose held-out error ends below this is whole, whatever share was removed.
 WHOLE = 1.2

@@ -3,43 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from joblib import Parallel, delayed
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.data import Data
+from flexarm_env.identify.hypothesis import (
+    OFFSET,
+    Hypothesis,
+    asks_for_offset,
+    at_bound,
+    excess,
+    fit_briefly,
+    fit_hypothesis,
+    in_windows,
+    measure_of,
+    try_effect,
+)
 from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.problem import Score, score
-from flexarm_env.identify.refit import (
-    FAR_OFF,
-    Progress,
-    Refit,
-    as_it_is,
-    or_from_nominal,
-    polish,
-    put_back,
-    refit,
-    with_effects_of,
-)
-from flexarm_env.identify.screen import (
-    Base,
-    Trial,
-    attempt,
-    best_trials,
-    candidates,
-    first_start,
-    screening_base,
-    screening_bases,
-    signatures,
-)
+from flexarm_env.identify.refit import FAR_OFF, Progress, Refit, as_it_is, polish, put_back, refit, with_effects_of
+from flexarm_env.identify.screen import Trial, attempt, best_trials, candidates, first_start, screening_bases
 
 #: How many candidates are refitted in full in each round.
 FINALISTS = 4
-#: Constants that strayed by more standard deviations than this are put back before every effect is tried with all constants, in
-#: a fit at this level, of so many iterations. One that leaves more than the last share of what no effect would leave is dropped.
-BENT, BRIEF_LEVEL, BRIEF_ITERATIONS, BRIEFLY_BETTER = 1.0, 0.003, 2, 0.9
+#: Constants that strayed by more standard deviations than this are put back before every effect is fitted briefly with all
+#: constants. One that leaves more than this share of what no effect would leave is dropped.
+BENT, BRIEFLY_BETTER = 1.0, 0.9
 #: And only those that lower the cost of the screening to the first share, by no less than the second of what the best does.
 LEAST_CHANGE, LEAST_OF_BEST = 0.97, 0.3
 #: Those that do this share of what the best does are refitted first, the others only if none of them is enough.
@@ -52,7 +43,7 @@ LEAST_GAIN, LEAST_TOTAL_GAIN = 0.25, 0.5
 #: constants: what is left of a large error comes from fits that end early, too.
 LEAST_REMOVED, LEAST_OF_FIRST = 0.2, 1e-3
 #: Share of the residual that a constant torque's signature must explain beside an effect for the two to be fitted together.
-OFFSET, LEAST_OFFSET = "constant_torque", 0.01
+LEAST_OFFSET = 0.01
 MOST_EFFECTS = 3
 #: Two effects are equivalent if the excess error that they leave differs by less than the first share of what they remove, and
 #: by less than one of them leaves, or the second, whichever is more.
@@ -60,20 +51,6 @@ SAME_GAIN, SAME_EXCESS = 0.03, 0.1
 #: A refit of the constants that leaves less than the first share of the excess error is trusted as a start; one that
 #: leaves more than the second is not.
 REFIT_HELPS, REFIT_FAILS = 0.2, 0.7
-
-
-def excess(value: float) -> float:
-    """Return the excess of an error over the noise, as a variance."""
-    return max(value**2 - 1.0, 1e-9)
-
-
-@dataclass
-class Hypothesis:
-    """Effects tried together, the arm refitted with them, and its errors on the held-out part."""
-
-    effects: tuple[str, ...]
-    refit: Refit
-    score: Score
 
 
 class Search:
@@ -141,7 +118,7 @@ class Search:
             gain = 1.0 - measure(hypothesis.score) / measure(self.best)
             if len(hypothesis.effects) == 1:
                 self._remember(hypothesis.effects[0], gain, hypothesis.refit)
-        possible = [h for h in found if not _at_bound(h)]
+        possible = [h for h in found if not at_bound(h)]
         return bool(possible) and self._accept(possible)
 
     def _try_all(self, trials: list[Trial], tried: Sequence[str], done: float, share: float) -> list[Hypothesis]:
@@ -153,7 +130,7 @@ class Search:
         names = [n for n in candidates(self.found.arm) if self.found.arm.known[n].fitted and n not in tried]
         straight = put_back(self.found, self.nominal, BENT)
         arms = [straight.with_effect(n, **(began.get(n) or first_start(straight, n, self.data.scales))) for n in names]
-        tasks = [delayed(_fit_briefly)(arm, self.nominal, self.data) for arm in (*arms, straight)]
+        tasks = [delayed(fit_briefly)(arm, self.nominal, self.data) for arm in (*arms, straight)]
         fits: list[tuple[float, str, Refit]] = []
         for i, (name, (error, found)) in enumerate(zip([*names, ""], self._parallel(tasks), strict=True)):
             fits.append((error, name, found))
@@ -171,7 +148,7 @@ class Search:
         singles = [h for h in found if len(h.effects) == 1]
         winner = found[0]
         if len(winner.effects) > 1 and singles:
-            ways = (measure, _in_windows)  # of models that are far off, one may rest where it should move, and err little
+            ways = (measure, in_windows)  # of models that are far off, one may rest where it should move, and err little
             if not any(self._is_worth(singles[0].score, winner.score, way) for way in ways):
                 winner = singles[0]
         removed = now - measure(winner.score)
@@ -214,7 +191,7 @@ class Search:
 
     def _is_enough(self, found: Score) -> bool:
         """Whether an error leaves nothing to explain."""
-        return found.windows < PERFECT or excess(found.windows) < self._least(_in_windows)
+        return found.windows < PERFECT or excess(found.windows) < self._least(in_windows)
 
     def _is_worth(self, without: Score, found: Score, measure: Callable[[Score], float]) -> bool:
         """Whether one more effect removes enough of the excess error."""
@@ -234,7 +211,7 @@ class Search:
         if OFFSET in self.found.arm.effects:
             return []
         others = [h for h in found if h.effects != (OFFSET,)]
-        asks = self._parallel([delayed(_asks_for_offset)(h.refit, self.data) for h in others])
+        asks = self._parallel([delayed(asks_for_offset)(h.refit, self.data) for h in others])
         pairs = [h for h, share in zip(others, asks, strict=True) if share > LEAST_OFFSET]
         arms = [h.refit.arm.with_effect(OFFSET, torque=0.0) for h in pairs]
         far = min(h.score.windows for h in found) > FAR_OFF
@@ -263,7 +240,7 @@ class Search:
     def _screen(self, done: float, share: float) -> list[Trial]:
         bases = screening_bases(self._starts(), self.data)
         names = candidates(self.found.arm)
-        tasks = [delayed(_try_effect)(base, name) for name in names for base in bases]
+        tasks = [delayed(try_effect)(base, name) for name in names for base in bases]
         trials = [attempt(bases[0], None)]
         for i, found in enumerate(self._parallel(tasks)):
             trials += found
@@ -285,7 +262,7 @@ class Search:
         self, effects: Sequence[tuple[str, ...]], arms: Sequence[Arm], done: float, share: float, thorough: bool = False
     ) -> list[Hypothesis]:
         pairs = zip(effects, arms, strict=True)
-        tasks = [delayed(_refit_arm)(e, arm, self.nominal, self.data, thorough) for e, arm in pairs]
+        tasks = [delayed(fit_hypothesis)(e, arm, self.nominal, self.data, thorough) for e, arm in pairs]
         out = []
         for i, hypothesis in enumerate(self._parallel(tasks)):
             out.append(hypothesis)
@@ -319,7 +296,7 @@ class Search:
         rivals = [(name,) for name in without.known[OFFSET].confused_with if name in lacking]
         arms = [without.with_effect(name) for (name,) in rivals]
         found = self._refit_all(rivals, arms, 0.9, 0.05, thorough=False)
-        found = [h for h in found if not _at_bound(h)]
+        found = [h for h in found if not at_bound(h)]
         measure = measure_of([self.best, *(h.score for h in found)])
         level = measure(self.best) + SAME_GAIN * (measure(self.first) - measure(self.best))
         best = min(found, key=lambda h: measure(h.score), default=None)
@@ -334,50 +311,3 @@ class Search:
         self.equivalent[place] = [name, *also, *(other for other in same if other != name)]
         self.steps[name] = best.score
         del self.steps[OFFSET]
-
-
-def _try_effect(base: Base, name: str) -> list[Trial]:
-    return [attempt(base, signature) for signature in signatures(base, name)]
-
-
-def _refit_arm(effects: tuple[str, ...], arm: Arm, nominal: Arm, data: Data, thorough: bool) -> Hypothesis:
-    found = refit(arm, nominal, data)
-    if thorough:
-        found = or_from_nominal(found, nominal, data)
-    return Hypothesis(effects, found, score(found.arm, data))
-
-
-def _asks_for_offset(found: Refit, data: Data) -> float:
-    """Return the share of what a refit leaves that looks like a constant torque."""
-    return sum(signature.explained for signature in signatures(screening_base(found, data), OFFSET))
-
-
-def _fit_briefly(arm: Arm, nominal: Arm, data: Data) -> tuple[float, Refit]:
-    """Return an arm fitted in a few steps, and its error on the fitted part."""
-    found = refit(arm, nominal, data, (BRIEF_LEVEL,), BRIEF_ITERATIONS, passes=0)
-    return score(found.arm, data, held_out=False).windows, found
-
-
-def _at_bound(hypothesis: Hypothesis) -> bool:
-    """Whether a parameter of its effects ran to the end of its range: no size of the effect explains the data."""
-    arm = hypothesis.refit.arm
-    for c in hypothesis.refit.coordinates:
-        section, name, *_ = c.path.split(".")
-        value = arm.value(c.path)
-        if section == "effects" and name in hypothesis.effects and value in (c.low, c.high):
-            return True
-    return False
-
-
-def _in_windows(score: Score) -> float:
-    return excess(score.windows)
-
-
-def measure_of(scores: Sequence[Score]) -> Callable[[Score], float]:
-    """Return the excess error by which hypotheses are judged: in windows, or freely replayed where none comes near.
-
-    A model that misses by far in one second is judged by the whole run, which shows what holds for long.
-    """
-    if min(s.windows for s in scores) > FAR_OFF:
-        return lambda s: excess(s.free_run)
-    return _in_windows

@@ -1,0 +1,80 @@
+"""A hypothesis: effects tried together, how they are fitted, and by what excess error they are judged."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.data import Data
+from flexarm_env.identify.problem import Score, score
+from flexarm_env.identify.refit import FAR_OFF, Refit, or_from_nominal, refit
+from flexarm_env.identify.screen import Base, Trial, attempt, screening_base, signatures
+
+#: A brief fit is one at this level, of so many iterations.
+BRIEF_LEVEL, BRIEF_ITERATIONS = 0.003, 2
+OFFSET = "constant_torque"
+
+
+def excess(value: float) -> float:
+    """Return the excess of an error over the noise, as a variance."""
+    return max(value**2 - 1.0, 1e-9)
+
+
+@dataclass
+class Hypothesis:
+    """Effects tried together, the arm refitted with them, and its errors on the held-out part."""
+
+    effects: tuple[str, ...]
+    refit: Refit
+    score: Score
+
+
+def in_windows(score: Score) -> float:
+    """Return the excess error in windows."""
+    return excess(score.windows)
+
+
+def measure_of(scores: Sequence[Score]) -> Callable[[Score], float]:
+    """Return the excess error by which hypotheses are judged: in windows, or freely replayed where none comes near.
+
+    A model that misses by far in one second is judged by the whole run, which shows what holds for long.
+    """
+    if min(s.windows for s in scores) > FAR_OFF:
+        return lambda s: excess(s.free_run)
+    return in_windows
+
+
+def try_effect(base: Base, name: str) -> list[Trial]:
+    """Return an effect fitted from its most promising start, if it explains anything."""
+    return [attempt(base, signature) for signature in signatures(base, name)]
+
+
+def fit_hypothesis(effects: tuple[str, ...], arm: Arm, nominal: Arm, data: Data, thorough: bool) -> Hypothesis:
+    """Return an arm refitted with effects; if thorough, from the nominal constants as well."""
+    found = refit(arm, nominal, data)
+    if thorough:
+        found = or_from_nominal(found, nominal, data)
+    return Hypothesis(effects, found, score(found.arm, data))
+
+
+def asks_for_offset(found: Refit, data: Data) -> float:
+    """Return the share of what a refit leaves that looks like a constant torque."""
+    return sum(signature.explained for signature in signatures(screening_base(found, data), OFFSET))
+
+
+def fit_briefly(arm: Arm, nominal: Arm, data: Data) -> tuple[float, Refit]:
+    """Return an arm fitted in a few steps, and its error on the fitted part."""
+    found = refit(arm, nominal, data, (BRIEF_LEVEL,), BRIEF_ITERATIONS, passes=0)
+    return score(found.arm, data, held_out=False).windows, found
+
+
+def at_bound(hypothesis: Hypothesis) -> bool:
+    """Whether a parameter of its effects ran to the end of its range: no size of the effect explains the data."""
+    arm = hypothesis.refit.arm
+    for c in hypothesis.refit.coordinates:
+        section, name, *_ = c.path.split(".")
+        value = arm.value(c.path)
+        if section == "effects" and name in hypothesis.effects and value in (c.low, c.high):
+            return True
+    return False
