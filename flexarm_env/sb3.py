@@ -83,7 +83,7 @@ class FlexArmVecEnv(VecEnv):
             infos[i] = {
                 "terminal_observation": last[i].copy(),
                 "TimeLimit.truncated": bool(truncated[i] and not terminated[i]),
-                "episode": {"r": float(self.returns[i]), "l": int(envs.batch.own[i, SAMPLE]), "t": elapsed},
+                "episode": {"r": float(self.returns[i]), "l": int(envs.batch.told[SAMPLE, i]), "t": elapsed},
             }
             self.returns[i] = 0.0
         envs.restart()

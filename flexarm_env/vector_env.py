@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.env.batch import Batch
+from flexarm_env.env.batch import INFO_NAMES, Batch
 from flexarm_env.env.flexarm import ARGUMENTS, find_arm, make_setup, refuse_unknown, spaces_of
 from flexarm_env.env.kernel import REWARD, SAMPLE, TERMINATED
 from flexarm_env.env.variation import Disturbance, Range
@@ -23,6 +22,8 @@ from flexarm_env.tasks import Task
 
 Array = NDArray[Any]
 
+#: Names under which an info says of which arms it tells, see gymnasium.vector.VectorEnv.
+PRESENT = tuple(f"_{name}" for name in INFO_NAMES)
 VECTOR_ARGUMENTS = (*ARGUMENTS, "num_envs", "max_episode_steps", "autoreset_mode", "threads")
 
 
@@ -153,12 +154,19 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         if not self.started:
             raise gym.error.ResetNeeded("step before reset: call envs.reset() first")
         batch = self.batch
-        batch.asked[:] = _commands(actions, self.num_envs)
-        batch.asked *= batch.limit
+        shape = np.shape(actions)
+        if shape != (self.num_envs, 1):
+            raise InputError(
+                f"actions of shape {shape}; give one number from -1 to 1 for each arm, in shape ({self.num_envs}, 1)"
+            )
+        values = np.ascontiguousarray(actions).reshape(-1)
+        arm = batch.ask(values if values.dtype == np.float32 else values.astype(np.float64))
+        if arm >= 0:
+            raise InputError(f"action of arm {arm} = {actions[arm][0]}; give numbers from -1 to 1")
         batch.step()
-        rewards = batch.own[:, REWARD].copy()
-        terminated = batch.own[:, TERMINATED] > 0.0
-        truncated = batch.own[:, SAMPLE] >= self.max_episode_steps
+        rewards = batch.told[REWARD].copy()
+        terminated = batch.told[TERMINATED] > 0.0
+        truncated = batch.told[SAMPLE] >= self.max_episode_steps
         self.over = terminated | truncated
         return rewards, terminated, truncated
 
@@ -183,7 +191,8 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         if mask is not self.all:
             for values in info.values():
                 values[~mask] = 0
-        return info | dict.fromkeys([f"_{name}" for name in info], mask.copy())
+        info.update(dict.fromkeys(PRESENT, mask.copy()))
+        return info
 
     def drawn_arm(self, arm: int) -> Arm:
         """Return arm number `arm` as it was drawn for its episode."""
@@ -199,18 +208,6 @@ def _mode(given: str | AutoresetMode) -> AutoresetMode:
         if given in (mode, mode.value, mode.name):
             return mode
     raise InputError(f"autoreset_mode = {given!r}; allowed: {', '.join(mode.value for mode in AutoresetMode)}")
-
-
-def _commands(actions: Any, count: int) -> Array:
-    """Return actions (arms, 1) as shares of the limit (arms,)."""
-    shape = np.shape(actions)
-    if shape != (count, 1):
-        raise InputError(f"actions of shape {shape}; give one number from -1 to 1 for each arm, in shape ({count}, 1)")
-    values: Array = np.asarray(actions, dtype=np.float64)[:, 0]
-    if not math.isfinite(values.sum()) and not np.isfinite(values).all():
-        arm = int(np.argmin(np.isfinite(values)))
-        raise InputError(f"action of arm {arm} = {values[arm]}; give numbers from -1 to 1")
-    return np.minimum(np.maximum(values, -1.0), 1.0)
 
 
 def slew_vector(num_envs: int = 1, **arguments: Any) -> FlexArmVectorEnv:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,10 +27,13 @@ THESIS_GEAR_RATIO = 1.5
 LARGEST = {"arm_angle": 4.0 * math.pi, "motor_speed": 200.0, "strain_mid": 10.0, "strain_base": 10.0, "tip_deflection": 2.0}
 #: What normalised observations are divided by.
 SCALES = {"arm_angle": math.pi, "motor_speed": 5.0, "strain_mid": 2.0, "strain_base": 2.0, "tip_deflection": 0.2}
-#: Names of what an info holds, in the order of the columns that they are read from.
+#: Names of what an info holds, in the order of the rows that they are read from.
 TRUTH_NAMES = ("hub_angle", "hub_speed", "tip_deflection", "stuck")
-TERM_NAMES = tuple(f"reward_{name}" for name in REWARD_TERMS)
+INFO_NAMES = (*TRUTH_NAMES, "target", "command", *(f"reward_{name}" for name in REWARD_TERMS))
 MOST_RATE = 10_000.0
+#: Rows of what is told of arms are longer by up to a line of the processor's cache: else those of 512 arms, or of a
+#: multiple, would push each other out of it.
+LINE = 8
 
 
 @dataclass(frozen=True)
@@ -113,9 +115,10 @@ class Batch:
         self.step_batch, self.layout = self.plant.kernel.step_batch, self.plant.layout
         self.first_state: Floats | None = None
         self.threads = max(min(threads, count), 1)
-        self.crew = Crew(self.threads) if self.threads > 1 else None
-        self.lead = count // self.threads
         self._allocate()
+        given = (self.arena, self.layout, self.physics, self.places, self.keys, self.observations)
+        several = self.threads > 1
+        self.crew = Crew(self.threads, count, self.step_batch, after_step, given) if several else None
 
     def _allocate(self) -> None:
         """Lay out all numbers in one array: the kernels pay for each array that they are given."""
@@ -126,6 +129,7 @@ class Batch:
         shapes = {
             "settings": (at.SETTINGS,),
             "sensors": self.sensors.shape,
+            "told": (at.ROWS, count + LINE - count % LINE),
             "own": (count, at.COLUMNS),
             "looks": (count, self.signals + TRUTH),
             "asked": (count,),
@@ -141,8 +145,8 @@ class Batch:
         first = dict(zip(shapes, [0, *ends[:-1].tolist()], strict=True))
         self.arena = np.zeros(ends[-1])
         views = {name: self.arena[first[name] :][: math.prod(shape)].reshape(shape) for name, shape in shapes.items()}
-        self.seen_of_first = self.arena[first["own"] :][: at.COLUMNS + self.signals + TRUTH] if count == 1 else self.arena[:0]
-        self.own, self.looks, self.asked, self.commands = views["own"], views["looks"], views["asked"], views["commands"]
+        self.told, self.own, self.looks = views["told"][:, :count], views["own"], views["looks"]
+        self.told_of_first, self.asked, self.commands = self.told[:, 0], views["asked"], views["commands"]
         self.shown, self.history, self.states, self.constants = (
             views["shown"], views["history"], views["states"], views["constants"],
         )  # fmt: skip
@@ -159,7 +163,7 @@ class Batch:
         self.places = np.array(
             [
                 first["settings"], first["sensors"], first["own"], first["looks"], self.signals + TRUTH, first["asked"],
-                first["pushes"], first["history"], first["shown"], self.signals, depth,
+                first["pushes"], first["history"], first["shown"], first["told"], views["told"].shape[1], self.signals, depth,
             ]
         )  # fmt: skip
 
@@ -195,9 +199,9 @@ class Batch:
         self.waiting[:, arm] = 0.0
         plant.kernel.look_batch(self.arena, plant.layout, self.physics, arm, arm + 1)
         angle = self.looks[arm, -TRUTH]
-        own[:] = 0.0
+        own[:] = self.told[:, arm] = 0.0
         own[at.FIRST_ANGLE] = angle
-        own[at.FIRST_TARGET] = own[at.TARGET] = angle if setup.task.hold else setup.task.target
+        own[at.FIRST_TARGET] = self.told[at.TARGET, arm] = angle if setup.task.hold else setup.task.target
         self.history[arm] = self.looks[arm, :-TRUTH]
         self.shown[arm] = self.looks[arm, :-TRUTH]
         at.after_reset(self.arena, self.places, self.keys, self.observations, arm)
@@ -220,33 +224,21 @@ class Batch:
             self.waiting[:-1] = self.waiting[1:]
             self.waiting[-1] = self.asked
         if self.crew is None:
-            self._step(0, 0, self.count)
+            self._step(0, self.count)
         else:
-            self._share(self.crew)
+            self.crew.run(self._step)
 
-    def _share(self, crew: Crew) -> None:
-        """Step the arms on all threads.
-
-        Helpers take some ten microseconds to wake up, and so does the caller where it has to wait for them. It takes as
-        many arms as keep it busy until they are done, by trial: fewer while they are done first, more when they are not.
-        """
-        each = (self.count - self.lead) / (self.threads - 1)
-        bounds = [0, *(self.count - round(each * left) for left in range(self.threads - 1, -1, -1))]
-        parts = [partial(self._step, part, bounds[part], bounds[part + 1]) for part in range(self.threads)]
-        some = max(self.count // 128, 1)
-        self.lead += 4 * some if crew.run(parts) else -some
-        self.lead = min(max(self.lead, self.count // (2 * self.threads)), self.count)
-
-    def _step(self, part: int, first: int, last: int) -> None:
-        self.step_batch(self.arena, self.layout, self.physics, first, last, part)
+    def _step(self, first: int, last: int) -> None:
+        self.step_batch(self.arena, self.layout, self.physics, first, last, 0)
         after_step(self.arena, self.places, self.keys, self.observations, first, last)
+
+    def ask(self, actions: Floats) -> int:
+        """Set the commands of the next step to actions (arms,) · limit; return the first arm whose is no number, or -1."""
+        return int(at.admit(actions, self.arena, self.places, self.limit))
 
     def info(self) -> dict[str, Floats]:
         """Return a copy of what an agent does not see, by name (arms,): the truth, the target, the reward's terms."""
-        own, looks = self.own.copy(), self.looks.copy()
-        columns = {name: looks[:, i - TRUTH] for i, name in enumerate(TRUTH_NAMES)}
-        columns |= {"target": own[:, at.TARGET], "command": own[:, at.COMMAND]}
-        return columns | {name: own[:, at.TERM + i] for i, name in enumerate(TERM_NAMES)}
+        return dict(zip(INFO_NAMES, self.told[: at.REWARD].copy(), strict=True))
 
     def arm_of(self, arm: int) -> Arm:
         """Return the arm as it was drawn for the present episode."""

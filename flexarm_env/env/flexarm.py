@@ -135,7 +135,7 @@ class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
             self.view.clear()
         if self.render_mode == "human":
             self.render()
-        return self.batch.first_observation.copy(), _info(self.batch.seen_of_first.tolist())
+        return self.batch.first_observation.copy(), _info(self.batch.told_of_first.tolist())
 
     def step(self, action: NDArray[np.float32]) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Apply the command action · limit for one sample.
@@ -151,8 +151,8 @@ class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
         batch.step()
         if self.render_mode == "human":
             self.render()
-        seen = batch.seen_of_first.tolist()
-        return batch.first_observation.copy(), seen[REWARD], seen[TERMINATED] > 0.0, False, _info(seen)
+        told = batch.told_of_first.tolist()
+        return batch.first_observation.copy(), told[REWARD], told[TERMINATED] > 0.0, False, _info(told)
 
     def state(self) -> NDArray[np.float64]:
         """Return the machine's state [q, q̇, extra], see Plant.physical: what no controller sees."""
@@ -203,19 +203,19 @@ def one_command(action: Any) -> float:
     return math.copysign(1.0, value)
 
 
-def _info(seen: list[float]) -> dict[str, Any]:
-    """Return an info from the arm's own numbers and its looks; written out, since it is made in every step."""
+def _info(told: list[float]) -> dict[str, Any]:
+    """Return an info from what is told of an arm; written out, since it is made in every step."""
     return {
-        "hub_angle": seen[-5],
-        "hub_speed": seen[-4],
-        "tip_deflection": seen[-3],
-        "stuck": seen[-2] > 0.0,
-        "target": seen[TARGET],
-        "command": seen[COMMAND],
-        "reward_distance": seen[TERM],
-        "reward_closeness": seen[TERM + 1],
-        "reward_vibration": seen[TERM + 2],
-        "reward_effort": seen[TERM + 3],
-        "reward_rate": seen[TERM + 4],
-        "reward_failure": seen[TERM + 5],
+        "hub_angle": told[0],
+        "hub_speed": told[1],
+        "tip_deflection": told[2],
+        "stuck": told[3] > 0.0,
+        "target": told[TARGET],
+        "command": told[COMMAND],
+        "reward_distance": told[TERM],
+        "reward_closeness": told[TERM + 1],
+        "reward_vibration": told[TERM + 2],
+        "reward_effort": told[TERM + 3],
+        "reward_rate": told[TERM + 4],
+        "reward_failure": told[TERM + 5],
     }

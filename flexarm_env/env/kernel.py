@@ -23,11 +23,14 @@ TERMS = 6
 SETTINGS = WEIGHTS + TERMS
 
 # --- columns of each arm's own numbers
-(
-    TARGET, FIRST_TARGET, FIRST_ANGLE, COMMAND, SAMPLE, TAP_LEFT, TAP, DROP_LEFT, DROPPED, TERMINATED, REWARD,
-) = range(11)  # fmt: skip
-TERM = 11
-COLUMNS = TERM + TERMS
+FIRST_TARGET, FIRST_ANGLE, TAP_LEFT, TAP, DROP_LEFT, DROPPED = range(6)
+COLUMNS = 6
+
+# --- rows of what is told of all arms, those of an info first: the truth, the target, the command, the reward's terms
+TRUTH_ROWS = 4
+TARGET, COMMAND, TERM = 4, 5, 6
+REWARD, TERMINATED, SAMPLE = TERM + TERMS, TERM + TERMS + 1, TERM + TERMS + 2
+ROWS = SAMPLE + 1
 
 # --- columns of each sensor's numbers
 NOISE, STEP, PER_STEP, LARGEST, PER_SCALE, WHOLE_DELAY, SHARE_OF_DELAY = range(7)
@@ -35,8 +38,9 @@ SENSOR = 7
 
 # --- places: where each quantity stands in the arms' common array
 (
-    AT_SETTINGS, AT_SENSORS, AT_OWN, AT_LOOKS, LOOKS_EACH, AT_ASKED, AT_PUSHES, AT_HISTORY, AT_SHOWN, SIGNALS, DEPTH,
-) = range(11)  # fmt: skip
+    AT_SETTINGS, AT_SENSORS, AT_OWN, AT_LOOKS, LOOKS_EACH, AT_ASKED, AT_PUSHES, AT_HISTORY, AT_SHOWN, AT_TOLD, TOLD_EACH, SIGNALS,
+    DEPTH,
+) = range(13)  # fmt: skip
 
 #: Distance [rad] at which closeness has fallen to 1/e.
 NEAR = 0.05
@@ -136,25 +140,47 @@ def after_step(arena, places, keys, observations, first, last):
         last: behind the last of them.
     """
     for arm in range(first, last):
-        own = places[AT_OWN] + arm * COLUMNS
-        judge(arena, places, own, arm)
-        sense(arena, places, own, keys[arm], observations, arm)
-        arena[places[AT_PUSHES] + arm] = push(arena, places[AT_SETTINGS], own, keys[arm])
+        judge(arena, places, arm)
+        tell_truth(arena, places, arm)
+        sense(arena, places, keys[arm], observations, arm)
+        arena[places[AT_PUSHES] + arm] = push(arena, places, keys[arm], arm)
 
 
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
 def after_reset(arena, places, keys, observations, arm):
     """Show an arm at the start of an episode, and draw what disturbs its first sample."""
-    own = places[AT_OWN] + arm * COLUMNS
-    sense(arena, places, own, keys[arm], observations, arm)
-    arena[places[AT_PUSHES] + arm] = push(arena, places[AT_SETTINGS], own, keys[arm])
+    tell_truth(arena, places, arm)
+    sense(arena, places, keys[arm], observations, arm)
+    arena[places[AT_PUSHES] + arm] = push(arena, places, keys[arm], arm)
+
+
+@njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
+def admit(actions, arena, places, limit):
+    """Write what actions (arms,) ask for [A or V]; return the first arm whose action is not a number, or -1."""
+    asked = places[AT_ASKED]
+    for arm in range(len(actions)):
+        action = actions[arm]
+        if not math.isfinite(action):
+            return arm
+        arena[asked + arm] = min(max(action, -1.0), 1.0) * limit
+    return -1
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def push(a, settings, own, key):
+def tell_truth(a, places, arm):
+    """Write an arm's truth into what is told of it."""
+    truth = places[AT_LOOKS] + arm * places[LOOKS_EACH] + places[SIGNALS]
+    told, row = places[AT_TOLD] + arm, places[TOLD_EACH]
+    for i in range(TRUTH_ROWS):
+        a[told + i * row] = a[truth + i]
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
+def push(a, places, key, arm):
     """Return what a tap on the hub adds to the command of the next sample; taps start at random."""
+    settings, own = places[AT_SETTINGS], places[AT_OWN] + arm * COLUMNS
     if a[own + TAP_LEFT] <= 0.0 and a[settings + TAP_CHANCE] > 0.0:
-        counter = 2 * int(a[own + SAMPLE])
+        counter = 2 * int(a[places[AT_TOLD] + SAMPLE * places[TOLD_EACH] + arm])
         if uniform(key, TAPS_STREAM, counter) < a[settings + TAP_CHANCE]:
             a[own + TAP_LEFT] = a[settings + TAP_SAMPLES]
             a[own + TAP] = a[settings + TAP_TORQUE] * (2.0 * uniform(key, TAPS_STREAM, counter + 1) - 1.0)
@@ -165,13 +191,15 @@ def push(a, settings, own, key):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def sense(a, places, own, key, observations, arm):
+def sense(a, places, key, observations, arm):
     """Write what the sensors of an arm show, over their scales, then the target, to observations (arms, signals + 1).
 
     A sensor is late by its delay, noisy, goes in steps and ends at its largest reading; one that has dropped out shows
     what it last showed.
     """
-    settings, signals, sample = places[AT_SETTINGS], places[SIGNALS], int(a[own + SAMPLE])
+    settings, signals, own = places[AT_SETTINGS], places[SIGNALS], places[AT_OWN] + arm * COLUMNS
+    told, row = places[AT_TOLD] + arm, places[TOLD_EACH]
+    sample = int(a[told + SAMPLE * row])
     looks, shown = places[AT_LOOKS] + arm * places[LOOKS_EACH], places[AT_SHOWN] + arm * signals
     dropped = _dropped(a, settings, own, key, sample, signals) if a[settings + DROP_CHANCE] > 0.0 else -1
     late = places[DEPTH] > 0
@@ -187,7 +215,7 @@ def sense(a, places, own, key, observations, arm):
         reading = min(max(reading, -a[sensor + LARGEST]), a[sensor + LARGEST])
         a[shown + j] = reading
         observations[arm, j] = reading * a[sensor + PER_SCALE]
-    observations[arm, signals] = a[own + TARGET] / a[settings + TARGET_SCALE]
+    observations[arm, signals] = a[told + TARGET * row] / a[settings + TARGET_SCALE]
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
@@ -215,29 +243,34 @@ def _dropped(a, settings, own, key, sample, signals):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def judge(a, places, own, arm):
-    """Move the target on and write the reward, its terms and whether the episode ends into the arm's own numbers."""
-    settings, command = places[AT_SETTINGS], a[places[AT_ASKED] + arm]
+def judge(a, places, arm):
+    """Move the target on and write the reward, its terms and whether the episode ends into what is told of an arm."""
+    settings, own, asked = places[AT_SETTINGS], places[AT_OWN] + arm * COLUMNS, a[places[AT_ASKED] + arm]
     truth = places[AT_LOOKS] + arm * places[LOOKS_EACH] + places[SIGNALS]
-    a[own + SAMPLE] += 1.0
-    change, a[own + COMMAND] = command - a[own + COMMAND], command
+    told, row = places[AT_TOLD] + arm, places[TOLD_EACH]
+    sample, target, command = told + SAMPLE * row, told + TARGET * row, told + COMMAND * row
+    a[sample] += 1.0
+    change, a[command] = asked - a[command], asked
     if a[settings + HALF_PERIOD] > 0.0:
-        half = math.floor(a[own + SAMPLE] * a[settings + INTERVAL] / a[settings + HALF_PERIOD] + 1e-9)
-        a[own + TARGET] = a[own + FIRST_TARGET] * (1.0 if half % 2 == 0 else -1.0)
+        half = math.floor(a[sample] * a[settings + INTERVAL] / a[settings + HALF_PERIOD] + 1e-9)
+        a[target] = a[own + FIRST_TARGET] * (1.0 if half % 2 == 0 else -1.0)
     angle, tip, lost = a[truth], a[truth + 2], a[truth + 4] > 0.0
     failed = lost or not abs(angle - a[own + FIRST_ANGLE]) <= a[settings + RANGE]
     if lost:
         angle, tip = a[own + FIRST_ANGLE] + a[settings + RANGE], 0.0
-    distance = abs(a[own + TARGET] - angle)
-    a[own + TERM] = -distance
-    a[own + TERM + 1] = math.exp(-distance / NEAR)
-    a[own + TERM + 2] = -abs(tip) / a[settings + LENGTH]
-    a[own + TERM + 3] = -((command / a[settings + LIMIT]) ** 2)
-    a[own + TERM + 4] = -((change / a[settings + LIMIT]) ** 2)
-    a[own + TERM + 5] = -1.0 if failed else 0.0
+    distance = abs(a[target] - angle)
+    terms = (
+        -distance,
+        math.exp(-distance / NEAR),
+        -abs(tip) / a[settings + LENGTH],
+        -((asked / a[settings + LIMIT]) ** 2),
+        -((change / a[settings + LIMIT]) ** 2),
+        -1.0 if failed else 0.0,
+    )
     reward = 0.0
     for i in range(TERMS):
-        a[own + TERM + i] *= a[settings + WEIGHTS + i]
-        reward += a[own + TERM + i]
-    a[own + REWARD] = reward
-    a[own + TERMINATED] = 1.0 if failed else 0.0
+        term = terms[i] * a[settings + WEIGHTS + i]
+        a[told + (TERM + i) * row] = term
+        reward += term
+    a[told + REWARD * row] = reward
+    a[told + TERMINATED * row] = 1.0 if failed else 0.0

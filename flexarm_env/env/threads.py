@@ -1,43 +1,56 @@
-"""Threads that wait between the steps of an environment, with as little between them and their work as Python allows."""
+"""Threads that share the arms of an environment, with as little between them and their work as Python allows."""
 
 from __future__ import annotations
 
 import threading
+import time
 import weakref
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from flexarm_env.env.pool import begin, claims, finish, help_out, next_share, was_asleep
+
+#: Share of its part of the arms that the caller takes before it turns to the pool, and shares of the pool per thread.
+OWN_SHARE, SHARES = 0.85, 8
+LEAST_SHARE = 16
 
 
 class Helper:
-    """A thread that does one piece of work at a time.
+    """A thread that helps out when it is called.
 
-    It holds no work while it waits, so that an environment that is dropped without close() is collected all the same.
+    It holds no work while it sleeps, so that an environment that is dropped without close() is collected all the same.
     """
 
     def __init__(self) -> None:
-        self.begin, self.done = threading.Lock(), threading.Lock()
-        self.begin.acquire()
-        self.done.acquire()
+        self.called = threading.Semaphore(0)
         self.work: Callable[[], None] | None = None
-        self.error: BaseException | None = None
+        self.dismissed = False
         threading.Thread(target=self._serve, daemon=True).start()
 
+    def call(self, work: Callable[[], None]) -> None:
+        """Wake it up to work."""
+        self.work = work
+        self.called.release()
+
+    def dismiss(self) -> None:
+        """Let it end."""
+        self.dismissed = True
+        self.called.release()
+
     def _serve(self) -> None:
-        while True:
-            self.begin.acquire()
+        while self.called.acquire() and not self.dismissed:
             work, self.work = self.work, None
-            if work is None:
-                return
-            try:
+            if work is not None:  # a call may come while it is still awake, and another soon after
                 work()
-            except BaseException as error:
-                self.error = error
             del work
-            self.done.release()
 
 
 def _dismiss(helpers: list[Helper]) -> None:
     while helpers:
-        helpers.pop().begin.release()
+        helpers.pop().dismiss()
 
 
 class Crew:
@@ -45,27 +58,40 @@ class Crew:
 
     Args:
         size: of the crew, the caller counted.
+        count: of arms.
+        move: pool.help_out's.
+        show: pool.help_out's.
+        given: what pool.help_out is to work with, from arena to observations.
     """
 
-    def __init__(self, size: int) -> None:
+    def __init__(self, size: int, count: int, move: Any, show: Any, given: tuple[Any, ...]) -> None:
+        own = round(OWN_SHARE * count / size)
+        share = max((count - own) // (SHARES * size), LEAST_SHARE)
+        self.limits = [0, *range(own, count, share), count]
+        self.shares, self.first = len(self.limits) - 1, claims(size)
+        self.last = self.first + self.shares
+        self.pool = np.zeros(self.last, dtype=np.int64)
         self.helpers = [Helper() for _ in range(size - 1)]
+        common = (move, show, self.pool, np.array(self.limits), *given, size)
+        self.jobs = [partial(help_out, *common, part) for part in range(1, size)]
         self.dismiss = weakref.finalize(self, _dismiss, self.helpers)
 
-    def run(self, parts: Sequence[Callable[[], None]]) -> bool:
-        """Do all parts at once, the first of them here; return, when all are done, whether that one was done first."""
-        for helper, part in zip(self.helpers, parts[1:], strict=True):
-            helper.work = part
-            helper.begin.release()
-        waited = False
+    def run(self, work: Callable[[int, int], None]) -> None:
+        """Move all arms on; `work` does so with those from first to last - 1 in the caller's thread."""
+        begin(self.pool, self.first)
+        for part, (helper, job) in enumerate(zip(self.helpers, self.jobs, strict=True), start=1):
+            if was_asleep(self.pool, part):
+                helper.call(job)
+        place = self.first
         try:
-            parts[0]()
+            while place >= 0:
+                share = place - self.first
+                work(self.limits[share], self.limits[share + 1])
+                place = next_share(self.pool, place + 1, self.last)
+        except BaseException:  # no helper is to be at work still when the next step begins
+            while place >= 0:
+                place = next_share(self.pool, place + 1, self.last)
+            raise
         finally:
-            for helper in self.helpers:
-                if not helper.done.acquire(blocking=False):
-                    waited = True
-                    helper.done.acquire()
-        for helper in self.helpers:
-            if helper.error is not None:
-                error, helper.error = helper.error, None
-                raise error
-        return waited
+            while not finish(self.pool, self.shares):
+                time.sleep(0.0)

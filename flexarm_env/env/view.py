@@ -44,20 +44,20 @@ class View:
 
     def draw(self, batch: Batch, state: NDArray[np.float64]) -> NDArray[np.uint8] | None:
         """Draw the arm in a physical state (states,)."""
-        own, truth = batch.own[0], batch.looks[0, -5:]
-        time = float(own[at.SAMPLE]) / self.setup.rate
+        told = batch.told_of_first.tolist()
+        time = told[at.SAMPLE] / self.setup.rate
         if self.bent is not None:
             self.trace.append((time, float(batch.shown[0, self.signals.index(self.bent)])))
         times, values = np.array(self.trace).reshape(-1, 2).T
         return self.renderer.draw(
             Scene(
                 time=time,
-                hub_angle=float(truth[0]),
-                stuck=bool(truth[3] > 0.0),
+                hub_angle=told[0],
+                stuck=told[3] > 0.0,
                 stations=self.stations,
                 deflection=self.shape @ state,
-                target=float(own[at.TARGET]),
-                command=float(own[at.COMMAND]) / batch.limit,
+                target=told[at.TARGET],
+                command=told[at.COMMAND] / batch.limit,
                 trace=(times, values),
                 title=self.title,
             )

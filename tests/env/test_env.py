@@ -100,16 +100,6 @@ def test_two_processes_give_the_same_bits() -> None:
     assert len(runs[0].stdout.strip()) == 64
 
 
-def test_threads_change_nothing() -> None:
-    one, two = (gym.make_vec("FlexArm/Slew-v0", 33, vectorization_mode="vector_entry_point", threads=n) for n in (1, 2))
-    one.reset(seed=1)
-    two.reset(seed=1)
-    for action in actions(30, 33):
-        for ours, theirs in zip(one.step(action), two.step(action), strict=True):
-            assert same(ours, theirs)
-    two.close()
-
-
 def test_the_pages_run() -> None:
     result = doctest.testmod(pages)
     assert result.attempted >= 15

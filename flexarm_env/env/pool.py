@@ -1,0 +1,158 @@
+"""Shares of the arms that threads claim, with nothing of the interpreter between two shares.
+
+A thread that has to be woken up comes some ten microseconds late, half of what a step of a thousand arms takes. A helper
+therefore watches for the next step for a while, and goes to sleep only if none follows. Who moves which share on is
+settled by atomic instructions: where a helper comes late, the caller does its work. Each begins at its own end, so that
+an arm mostly stays in the cache of one core.
+The functions stand alone in this file, so that numba's cache, which sees edits in this file only, is never out of date.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numba import boolean, float32, float64, int64, njit, types, uint64
+from numba.extending import intrinsic
+
+# --- places of a pool's numbers: what threads write stands in lines of the processor's cache of its own
+STEP, DONE, AWAKE, LINE = 0, 8, 16, 8
+
+#: How often a helper looks for the next step before it goes to sleep: about 0.1 ms.
+LOOKS = 500_000
+
+FLOATS, PLACES = float64[::1], int64[::1]
+#: What moves arms on (plant.batch.step_batch), and what judges and shows them (env.kernel.after_step).
+MOVE = types.FunctionType(types.none(FLOATS, PLACES, PLACES, int64, int64, int64))
+SHOW = types.FunctionType(types.none(FLOATS, PLACES, uint64[::1], float32[:, ::1], int64, int64))
+
+
+def _pointer(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    array = context.make_array(signature.args[0])(context, builder, arguments[0])
+    return builder.gep(array.data, [arguments[1]])
+
+
+@intrinsic
+def look(_, pool, place):
+    """Return pool[place] as other threads last left it."""
+
+    def generate(context, builder, signature, arguments):
+        return builder.load_atomic(_pointer(context, builder, signature, arguments), "seq_cst", 8)
+
+    return int64(pool, types.intp), generate
+
+
+@intrinsic
+def add(_, pool, place, value):
+    """Add to pool[place], at once for all threads, and return what it was."""
+
+    def generate(context, builder, signature, arguments):
+        return builder.atomic_rmw("add", _pointer(context, builder, signature, arguments), arguments[2], "seq_cst")
+
+    return int64(pool, types.intp, int64), generate
+
+
+@intrinsic
+def exchange(_, pool, place, value):
+    """Set pool[place], at once for all threads, and return what it was."""
+
+    def generate(context, builder, signature, arguments):
+        return builder.atomic_rmw("xchg", _pointer(context, builder, signature, arguments), arguments[2], "seq_cst")
+
+    return int64(pool, types.intp, int64), generate
+
+
+@intrinsic
+def replace(_, pool, place, old, new):
+    """Set pool[place] to the new value if it is the old one; return whether it was."""
+
+    def generate(context, builder, signature, arguments):
+        place = _pointer(context, builder, signature, arguments)
+        result = builder.cmpxchg(place, arguments[2], arguments[3], "seq_cst", "seq_cst")
+        return builder.extract_value(result, 1)
+
+    return boolean(pool, types.intp, int64, int64), generate
+
+
+@njit((int64(int64)), cache=True)
+def claims(threads):
+    """Return where the shares' claims begin in a pool."""
+    return AWAKE + LINE * threads
+
+
+@njit((PLACES, int64), cache=True, nogil=True)
+def begin(pool, first):
+    """Begin a step, with the share whose claim is in pool[first] claimed already."""
+    exchange(pool, DONE, 0)
+    pool[first] += 1
+    add(pool, STEP, 1)
+
+
+@njit(boolean(PLACES, int64), cache=True, nogil=True)
+def was_asleep(pool, part):
+    """Return whether helper `part` has to be woken up, and note that it is."""
+    return exchange(pool, AWAKE + LINE * part, 1) == 0
+
+
+@njit(int64(PLACES, int64, int64), cache=True, nogil=True)
+def next_share(pool, first, last):
+    """Count one share as done, and claim the first that nobody has of those whose claims are in pool[first:last].
+
+    Return its place there, or -1.
+    """
+    add(pool, DONE, 1)
+    step = look(pool, STEP)
+    for place in range(first, last):
+        if replace(pool, place, step - 1, step):
+            return place
+    return -1
+
+
+@njit(boolean(PLACES, int64), cache=True, nogil=True)
+def finish(pool, shares):
+    """Wait for about 0.1 ms until so many shares are done; return whether they are."""
+    looks = 0
+    while look(pool, DONE) < shares and looks < LOOKS:
+        looks += 1
+    return looks < LOOKS
+
+
+@njit(
+    (MOVE, SHOW, PLACES, PLACES, FLOATS, PLACES, PLACES, PLACES, uint64[::1], float32[:, ::1], int64, int64),
+    cache=True, nogil=True,
+)  # fmt: skip
+def help_out(move, show, pool, bounds, arena, layout, physics, places, keys, observations, threads, part):
+    """Move on what shares nobody has claimed, step after step, until no step follows for a while.
+
+    Args:
+        move: moves arms on.
+        show: judges and shows them.
+        pool: steps, claims, and who is awake.
+        bounds: (shares + 1,): share i is the arms from bounds[i] to bounds[i + 1] - 1.
+        arena: all numbers of the arms.
+        layout: move's.
+        physics: move's places in arena.
+        places: show's places in arena.
+        keys: (arms,) of the episodes.
+        observations: (arms, signals + 1), to be written.
+        threads: number of them.
+        part: number of this one, from 1 up.
+    """
+    shares, awake = len(bounds) - 1, AWAKE + LINE * part
+    last = shares * (part + 1) // threads - 1
+    exchange(pool, awake, 1)
+    while True:
+        step = look(pool, STEP)
+        for i in range(shares):
+            share = (last - i) % shares
+            if replace(pool, claims(threads) + share, step - 1, step):
+                move(arena, layout, physics, bounds[share], bounds[share + 1], part)
+                show(arena, places, keys, observations, bounds[share], bounds[share + 1])
+                add(pool, DONE, 1)
+        looks = 0
+        while look(pool, STEP) == step and looks < LOOKS:
+            looks += 1
+        if looks == LOOKS:
+            exchange(pool, awake, 0)
+            if look(pool, STEP) == step:  # else a step began before it was seen that this thread sleeps
+                return
+            exchange(pool, awake, 1)
