@@ -9,7 +9,7 @@ from dataclasses import replace
 from flexarm_env.arm import Arm, short_name
 from flexarm_env.identify.data import Data, prepare
 from flexarm_env.identify.hiding import could_hide
-from flexarm_env.identify.hypothesis import excess, measure_of
+from flexarm_env.identify.hypothesis import excess
 from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.next_run import propose
 from flexarm_env.identify.origin import with_origin
@@ -20,8 +20,8 @@ from flexarm_env.identify.refit import Progress, best_refit, estimates, with_all
 from flexarm_env.identify.results import Candidate, Diagnosis
 from flexarm_env.identify.search import LEAST_REMOVED, LEAST_TOTAL_GAIN, PERFECT, Search
 
-#: A model whose held-out error ends below this is whole, whatever share was removed.
-WHOLE = 1.2
+#: A model whose held-out errors in windows and freely replayed end below these is whole, whatever share was removed.
+WHOLE, WHOLE_FREE_RUN = 1.2, 1.5
 
 
 def diagnose(
@@ -62,9 +62,7 @@ def diagnose(
 
 
 def _verdict(search: Search, before: Score, first: Score) -> str:
-    measure = measure_of([search.best])
-    total = 1.0 - measure(search.best) / measure(first)
-    if search.accepted and (total >= LEAST_TOTAL_GAIN or search.best.windows <= WHOLE) and _lasts(search, first):
+    if search.accepted and _explains(search, first):
         return "effects"
     if first.windows > WHOLE:
         return "unknown"
@@ -72,14 +70,16 @@ def _verdict(search: Search, before: Score, first: Score) -> str:
     return "parameters" if needed else "nothing_missing"
 
 
-def _lasts(search: Search, first: Score) -> bool:
-    """Whether what was found explains whole runs, too, as the true effect does, not only the seconds that it was fitted to.
+def _explains(search: Search, first: Score) -> bool:
+    """Whether what was found leaves nothing to explain, or explains seconds and whole runs alike, as true effects do.
 
-    Where torque noise is stated, no free run says anything.
+    What imitates another effect often does in only one of the two. Where torque noise is stated, no free run says anything.
     """
-    before, after = excess(first.free_run), excess(search.best.free_run)
-    known = search.nominal.constants["drive"]["torque_noise"] == 0.0
-    return not known or search.best.free_run <= WHOLE or after <= (1.0 - LEAST_TOTAL_GAIN) * before
+    best = search.best
+    errors = [(first.windows, best.windows, WHOLE)]
+    if not search.noisy:
+        errors.append((first.free_run, best.free_run, WHOLE_FREE_RUN))
+    return all(new <= whole or excess(new) <= (1.0 - LEAST_TOTAL_GAIN) * excess(old) for old, new, whole in errors)
 
 
 def _conclude(

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.data import Data
 from flexarm_env.identify.problem import Score, score
-from flexarm_env.identify.refit import FAR_OFF, Refit, or_from_nominal, refit
+from flexarm_env.identify.refit import FAR_OFF, NEAR, Refit, or_from_nominal, refit
 from flexarm_env.identify.screen import Base, Trial, attempt, screening_base, signatures
 
 #: A brief fit is one at this level, of so many iterations.
@@ -36,12 +37,15 @@ def in_windows(score: Score) -> float:
 
 
 def measure_of(scores: Sequence[Score]) -> Callable[[Score], float]:
-    """Return the excess error by which hypotheses are judged: in windows, or freely replayed where none comes near.
+    """Return the excess error by which hypotheses are judged: in windows where one comes near the noise.
 
-    A model that misses by far in one second is judged by the whole run, which shows what holds for long.
+    Else what holds for long counts as much, which the whole run shows; and alone, where even one second is far off.
     """
-    if min(s.windows for s in scores) > FAR_OFF:
+    best = min(s.windows for s in scores)
+    if best > FAR_OFF:
         return lambda s: excess(s.free_run)
+    if best > NEAR[1]:
+        return lambda s: math.sqrt(excess(s.windows) * excess(s.free_run))
     return in_windows
 
 

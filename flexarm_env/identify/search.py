@@ -37,8 +37,8 @@ LEAST_CHANGE, LEAST_OF_BEST = 0.97, 0.3
 NEAR_BEST = 0.6
 #: A held-out error below this leaves nothing to explain.
 PERFECT = 1.1
-#: Least share of the excess error that an effect must remove to be accepted, and all accepted ones together.
-LEAST_GAIN, LEAST_TOTAL_GAIN = 0.25, 0.5
+#: Least share of the excess error that an effect must remove to be accepted; where a model is far off; and all accepted ones.
+LEAST_GAIN, LEAST_GAIN_FAR_OFF, LEAST_TOTAL_GAIN = 0.25, 0.5, 0.7
 #: Excess error, as a variance over the noise's, that an effect must remove at least, and as a share of that of the refitted
 #: constants: what is left of a large error comes from fits that end early, too.
 LEAST_REMOVED, LEAST_OF_FIRST = 0.2, 1e-3
@@ -58,6 +58,7 @@ class Search:
 
     def __init__(self, nominal: Arm, data: Data, jobs: int, say: Progress) -> None:
         self.nominal, self.data, self.jobs, self.say = nominal, data, jobs, say
+        self.noisy = nominal.constants["drive"]["torque_noise"] > 0.0
         self.accepted: list[str] = []
         self.equivalent: list[list[str]] = []
         self.steps: dict[str, Score] = {}
@@ -112,7 +113,7 @@ class Search:
             self._go_on()
         if not found:
             return False
-        measure = measure_of([h.score for h in found])
+        measure = self._measure_of([h.score for h in found])
         found.sort(key=lambda h: measure(h.score))
         for hypothesis in reversed(found):
             gain = 1.0 - measure(hypothesis.score) / measure(self.best)
@@ -143,7 +144,7 @@ class Search:
 
     def _accept(self, found: list[Hypothesis]) -> bool:
         """Take the best hypothesis if it removes enough; the simplest of those that remove nearly as much."""
-        measure = measure_of([h.score for h in found])
+        measure = self._measure_of([h.score for h in found])
         now = measure(self.best)
         singles = [h for h in found if len(h.effects) == 1]
         winner = found[0]
@@ -185,6 +186,10 @@ class Search:
         left = measure(better[0].score)
         return [h for h in better if measure(h.score) <= left + min(SAME_GAIN * removed, max(left, SAME_EXCESS))]
 
+    def _measure_of(self, scores: Sequence[Score]) -> Callable[[Score], float]:
+        """Return the excess error by which hypotheses are judged; where torque noise is stated, no whole run says anything."""
+        return in_windows if self.noisy else measure_of(scores)
+
     def _least(self, measure: Callable[[Score], float]) -> float:
         """Return the excess error that an effect must remove at least."""
         return max(LEAST_REMOVED, LEAST_OF_FIRST * measure(self.first))
@@ -204,7 +209,7 @@ class Search:
         What is missing then is something else, which a flexible enough effect imitates where it was fitted.
         """
         pairs = ((found.windows, self.best.windows), (found.free_run, self.best.free_run))
-        return found.windows > FAR_OFF and any(excess(new) > (1.0 - LEAST_TOTAL_GAIN) * excess(old) for new, old in pairs)
+        return found.windows > FAR_OFF and any(excess(new) > (1.0 - LEAST_GAIN_FAR_OFF) * excess(old) for new, old in pairs)
 
     def _with_offset(self, found: list[Hypothesis], done: float, share: float) -> list[Hypothesis]:
         """Return the hypotheses with a constant torque beside each: alone it hides what friction explains, and it them."""
@@ -282,7 +287,7 @@ class Search:
         for effect in list(self.accepted) if len(self.accepted) > 1 else []:
             without = refit(self.found.arm.without_effect(effect), self.nominal, self.data)
             value = score(without.arm, self.data)
-            measure = measure_of([value, self.best])
+            measure = self._measure_of([value, self.best])
             if not self._is_worth(value, self.best, measure):
                 self.found, self.best = without, value
                 place = self.accepted.index(effect)
@@ -297,7 +302,7 @@ class Search:
         arms = [without.with_effect(name) for (name,) in rivals]
         found = self._refit_all(rivals, arms, 0.9, 0.05, thorough=False)
         found = [h for h in found if not at_bound(h)]
-        measure = measure_of([self.best, *(h.score for h in found)])
+        measure = self._measure_of([self.best, *(h.score for h in found)])
         level = measure(self.best) + SAME_GAIN * (measure(self.first) - measure(self.best))
         best = min(found, key=lambda h: measure(h.score), default=None)
         same = [h.effects[0] for h in found if measure(h.score) <= level]

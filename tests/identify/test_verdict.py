@@ -12,7 +12,8 @@ from flexarm_env.identify.problem import Score
 
 
 def verdict(before: Score, first: Score, best: Score, accepted: list[str], arm: str = "thesis") -> str:
-    return _verdict(SimpleNamespace(best=best, accepted=accepted, nominal=Arm.load(arm)), before, first)
+    noisy = Arm.load(arm).constants["drive"]["torque_noise"] > 0.0
+    return _verdict(SimpleNamespace(best=best, accepted=accepted, noisy=noisy), before, first)
 
 
 BEFORE, FIRST = Score(20.0, 60.0), Score(3.0, 12.0)
@@ -26,6 +27,7 @@ BEFORE, FIRST = Score(20.0, 60.0), Score(3.0, 12.0)
         (Score(1.3, 6.0), ["backlash"], "effects"),  # not whole, but most of both errors is gone
         (Score(1.1, 11.0), ["friction_warmup"], "unknown"),  # explains the seconds that it was fitted to, no whole run
         (Score(2.6, 2.8), ["cogging"], "unknown"),
+        (Score(2.0, 8.0), ["brush_drop"], "unknown"),  # most of the one, not of the other
         (FIRST, [], "unknown"),
     ],
 )
@@ -35,6 +37,10 @@ def test_an_effect_is_named_if_it_explains_windows_and_whole_runs(best, accepted
 
 def test_a_free_run_says_nothing_where_noise_drives_the_arm():
     assert verdict(BEFORE, FIRST, Score(1.0, 11.0), ["asymmetric_viscous"], "emps") == "effects"
+
+
+def test_a_weak_effect_is_named_though_a_whole_run_gains_nothing():
+    assert verdict(BEFORE, Score(1.32, 1.34), Score(1.05, 1.46), ["saturation"]) == "effects"
 
 
 def test_constants_are_blamed_where_nothing_else_is_left():
