@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from flexarm_env.arm import Arm
 from flexarm_env.env import kernel as at
 from flexarm_env.env.kernel import after_step
+from flexarm_env.env.pool import LINE
 from flexarm_env.env.threads import Crew
 from flexarm_env.env.variation import Disturbance, Variation, hash_of
 from flexarm_env.errors import InputError
@@ -31,9 +32,6 @@ SCALES = {"arm_angle": math.pi, "motor_speed": 5.0, "strain_mid": 2.0, "strain_b
 TRUTH_NAMES = ("hub_angle", "hub_speed", "tip_deflection", "stuck")
 INFO_NAMES = (*TRUTH_NAMES, "target", "command", *(f"reward_{name}" for name in REWARD_TERMS))
 MOST_RATE = 10_000.0
-#: Rows of what is told of arms are longer by up to a line of the processor's cache: else those of 512 arms, or of a
-#: multiple, would push each other out of it.
-LINE = 8
 
 
 @dataclass(frozen=True)
@@ -129,7 +127,7 @@ class Batch:
         shapes = {
             "settings": (at.SETTINGS,),
             "sensors": self.sensors.shape,
-            "told": (at.ROWS, count + LINE - count % LINE),
+            "told": (at.ROWS, count + LINE - count % LINE),  # rows of a multiple of 512 would push each other out of the cache
             "own": (count, at.COLUMNS),
             "looks": (count, self.signals + TRUTH),
             "asked": (count,),

@@ -14,8 +14,10 @@ from typing import Any
 from numba import boolean, float32, float64, int64, njit, types, uint64
 from numba.extending import intrinsic
 
-# --- places of a pool's numbers: what threads write stands in lines of the processor's cache of its own
-STEP, DONE, AWAKE, LINE = 0, 8, 16, 8
+#: Numbers in a line of the processor's cache.
+LINE = 8
+# --- places of a pool's numbers: what threads write stands in lines of their own
+STEP, DONE, AWAKE = 0, LINE, 2 * LINE
 
 #: How often a helper looks for the next step before it goes to sleep: about 0.1 ms.
 LOOKS = 500_000
