@@ -11,6 +11,7 @@ from agents.learning.options import InterfaceOptions
 from flexarm_env.arm import Arm
 from flexarm_env.controllers import make_controller
 from flexarm_env.controllers.estimator import Estimator, scalar
+from flexarm_env.controllers.loads import KnownLoads
 from flexarm_env.controllers.lqg import LQG
 from flexarm_env.controllers.payload import PayloadEstimator
 
@@ -56,6 +57,7 @@ class PolicyInterface:
         self.options, self.arm, self.signals = options, arm, list(arm.signals)
         self.limit = arm.constants["drive"]["limit"]
         self.base = make_controller(options.base, arm, interval) if options.base != "none" else None
+        self.loads = KnownLoads(arm)
         self.estimator = Estimator(arm, interval) if options.estimate else None
         self.weigher = PayloadEstimator(arm, interval) if options.estimate else None
         #: What an average takes over of each new reading (averages, 1, 1).
@@ -129,8 +131,9 @@ class PolicyInterface:
         push = np.clip(self.last / WHOLE_KICK, -1.0, 1.0) * self.kick
         share = np.clip(self.wanted + self.options.authority * self.last + push, -1.0, 1.0)
         self.commands[self.sample % self.depth] = self.command = share
+        acts = self.loads.through(share * self.limit)
         if self.estimator:
-            self.estimator.predict(share * self.limit)
+            self.estimator.predict(acts)
         if isinstance(self.base, LQG):
-            self.base.estimator.amend((share - self.wanted) * self.limit)
+            self.base.estimator.amend(acts - self.loads.through(self.wanted * self.limit))
         return share[:, None].astype(np.float32)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
+from flexarm_env.controllers.loads import KnownLoads
 from flexarm_env.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -19,6 +20,8 @@ THESIS_LIMIT, THESIS_GEAR_RATIO = 5.0, 1.5
 
 class Controller(ABC):
     """A control law over what the rig measures. The same bits come out for one arm and for that arm among many.
+
+    Beside the law's command goes what holds the hub against loads that the believed arm has (see KnownLoads).
 
     A reading that is not finite is replaced by that arm's last finite one (0 before there is one), so that a command is
     always finite and one bad sample does not stay in the controller's memory.
@@ -51,6 +54,7 @@ class Controller(ABC):
         amps_per_command = 1.0 / drive["resistance"] if arm.input == "voltage" else 1.0
         #: Torque on the hub per command [Nm/A or Nm/V] of a motor that stands still.
         self.hub_torque_per_command = drive["gear_ratio"] * drive["torque_constant"] * amps_per_command
+        self.loads = KnownLoads(arm)
         self._count: int | None = None
         self._width = -1
         self._seen = np.zeros((0, 0))
@@ -84,7 +88,8 @@ class Controller(ABC):
         seen = seen.reshape(self._width, -1)
         finite = np.isfinite(seen)
         self._seen = seen.copy() if finite.all() else np.where(finite, seen, self._seen)
-        command = self.clipped(self._command(self._seen))
+        command = self.clipped(self.loads.met(self._command(self._seen), self._seen[:, -1]))
+        self._sent(self.loads.through(command))
         return command if self._count is not None else command.reshape(())
 
     def action(self, observation: NDArray[np.floating]) -> NDArray[np.float32]:
@@ -116,6 +121,9 @@ class Controller(ABC):
     @abstractmethod
     def _command(self, seen: Floats) -> Floats:
         """Return commands (count,) from finite observations (count, signals + 1)."""
+
+    def _sent(self, command: Floats) -> None:  # noqa: B027
+        """Note the commands (count,) that act on the arms until the next observation, for laws that predict."""
 
 
 def thesis_scale(arm: Arm) -> tuple[float, float]:

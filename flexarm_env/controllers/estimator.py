@@ -45,6 +45,9 @@ class Estimator:
         self.transition[:size, size] = self.model.response[:, 1]
         self.response = np.append(self.model.response[:, 0], 0.0)
         self.direct = self.model.direct[:, 0]
+        #: What the arm's constant torque adds to the state in a sample, and to the readings.
+        self.drift = np.append(self.model.response[:, 1], 0.0) * (torque := arm.structure().hub_torque)
+        self.offset = self.model.offset + self.model.direct[:, 1] * torque
         self.output = np.hstack([self.model.output, self.model.direct[:, 1:]])
         noise = [max(np.hypot(s["noise"], s["resolution"] / 12**0.5), LEAST_NOISE) for s in arm.sensors.values()]
         extra = [STRAIN_LEFT_OUT * signal.startswith("strain") for signal in arm.sensors]
@@ -71,13 +74,13 @@ class Estimator:
             self._fresh = False
             angle = readings[:, self._angle] - self.model.offset[self._angle]
             self.state[:, :-1] = angle[:, None] * np.linalg.pinv(self.model.lift)[:, self.model.names.index("hub")]
-        expected = product(self.output, self.state) + self._sent[:, None] * self.direct + self.model.offset
+        expected = product(self.output, self.state) + self._sent[:, None] * self.direct + self.offset
         self.state = self.state + product(self.gain, readings - expected)
         return self.state
 
     def predict(self, command: Floats) -> None:
         """Move the estimate on by one sample under commands (count,) as the drive lets them through."""
-        self.state = product(self.transition, self.state) + command[:, None] * self.response
+        self.state = product(self.transition, self.state) + command[:, None] * self.response + self.drift
         self._sent = command
 
     def amend(self, extra: Floats) -> None:

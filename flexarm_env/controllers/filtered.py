@@ -40,7 +40,5 @@ class FilteredVibrationSuppression(VibrationSuppression):
         strain = self.estimator.reading(self._gage)
         return self.estimator.reading("motor_speed"), self._torque_per_strain * strain
 
-    def _command(self, seen: Floats) -> Floats:
-        command = self.clipped(super()._command(seen))
+    def _sent(self, command: Floats) -> None:
         self.estimator.predict(command)
-        return command

@@ -62,9 +62,10 @@ class LQG(Controller):
         # K x̂ holds the whole angle: the target, moved to where its error is at most the furthest, takes it off again
         wanted = self.stiffness * (near + seen[:, -1] - error) - scalar(self.gain, state[:, :-1])
         self._integrate(error)
-        command = self.clipped(wanted + self._integral - friction / self.hub_torque_per_command)
+        return wanted + self._integral - friction / self.hub_torque_per_command
+
+    def _sent(self, command: Floats) -> None:
         self.estimator.predict(command)
-        return command
 
     def _integrate(self, error: Floats) -> None:
         """Integrate the angle's error [command] where it is small but not yet small enough, else let it fade."""

@@ -50,7 +50,7 @@ class ScheduledLQG(LQG):
 
     def _adopt(self) -> None:
         """Give each arm the matrices of its design."""
-        for name in ("transition", "response", "output", "direct", "gain"):
+        for name in ("transition", "response", "drift", "output", "direct", "offset", "gain"):
             setattr(self.estimator, name, self._each([getattr(design.estimator, name) for design in self._designs]))
         for name in ("gain", "stiffness", "_hub", "_furthest"):
             setattr(self, name, self._each([getattr(design, name) for design in self._designs]))
