@@ -43,6 +43,7 @@ CASES: Mapping[str, tuple[Mapping[str, float], str]] = {
     "cable": ({"cable": 0.15}, "cable_stiffness"),
     "dead-zone": ({"dead": 0.4}, "dead_zone"),
     "bias": ({"bias": 0.15}, "constant_torque"),
+    "lag": ({"lag": 0.02}, "current_lag"),
 }
 #: By which plan policies of each kind are trained; corrected ones as nominal ones, on another arm.
 PLANS = {"nominal": "nominal", "randomised": "randomised", "corrected": "nominal"}

@@ -118,7 +118,7 @@ class LearnedPolicy:
         self.interface.start(width)
         self.memory: Any = None
         self.starts = np.ones(width, dtype=bool)
-        self.held = np.zeros((width, 1), dtype=np.float32)
+        self.held = np.zeros((width, self.interface.options.actions), dtype=np.float32)
 
     def action(self, observation: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
         """Return shares of the limit (…, 1) for physical observations (…, signals + 1); … is nothing or the count."""

@@ -57,7 +57,7 @@ class EpisodeVecEnv(VecEnv):
         self.mean_return: float | None = None
         ranges = len(self.envs.setup.variation.ranges)
         self.width = self.interface.size + (len(FINE_TRUTH) + ranges if self.privileged else 0)
-        super().__init__(plan.at_once, *spaces_of(self.width))
+        super().__init__(plan.at_once, *spaces_of(self.width, plan.interface.actions))
 
     def reset(self) -> Array:
         """Start the next episode of all arms; return what policy and critic see (arms, width)."""
@@ -75,7 +75,7 @@ class EpisodeVecEnv(VecEnv):
         return self._observe()
 
     def step_async(self, actions: Array) -> None:
-        """Take the actions (arms, 1) of the next step."""
+        """Take the actions (arms, 1 or 2) of the next step."""
         self.actions = actions
 
     def step_wait(self) -> tuple[Array, Array, Array, list[dict[str, Any]]]:
@@ -133,9 +133,9 @@ class EpisodeVecEnv(VecEnv):
         return [None] * self.num_envs
 
 
-def spaces_of(width: int) -> tuple[spaces.Box[Any], spaces.Box[Any]]:
-    """Return the spaces of what policy and critic see (width,) and of actions (1,)."""
-    return spaces.Box(-np.inf, np.inf, (width,), np.float32), spaces.Box(-1.0, 1.0, (1,), np.float32)
+def spaces_of(width: int, actions: int) -> tuple[spaces.Box[Any], spaces.Box[Any]]:
+    """Return the spaces of what policy and critic see (width,) and of actions (actions,)."""
+    return spaces.Box(-np.inf, np.inf, (width,), np.float32), spaces.Box(-1.0, 1.0, (actions,), np.float32)
 
 
 def actions_each(task: Task, repeat: int) -> int:

@@ -23,16 +23,6 @@ FINE_STATE = {"hub": 0.003, "hub_rate": 0.03, "tip": 0.001, "tip_rate": 0.01, "f
 #: Features are divided by this, so that most are within ±2.
 SPREAD = 3.0
 PAYLOAD_SCALE = 0.15
-#: Action from which on the kick is whole: in between it grows evenly, so that learning has a slope to go by.
-WHOLE_KICK = 0.1
-
-
-def static_friction(arm: Arm) -> float:
-    """Return the command [A or V] whose torque a stuck hub's dry friction can just hold, as the arm has it."""
-    effects, drive = dict(arm.present()), arm.constants["drive"]
-    torque = effects.get("coulomb", {}).get("torque", 0.0) + effects.get("stiction", {}).get("extra", 0.0)
-    per_torque = drive["resistance"] if arm.input == "voltage" else 1.0
-    return float(torque * per_torque / (drive["gear_ratio"] * drive["torque_constant"]))
 
 
 def squeezed(value: Floats, fine: float) -> Floats:
@@ -62,7 +52,6 @@ class PolicyInterface:
         self.weigher = PayloadEstimator(arm, interval) if options.estimate else None
         #: What an average takes over of each new reading (averages, 1, 1).
         self.fresh = 1.0 - np.exp(-interval / np.array(options.averages).reshape(-1, 1, 1))
-        self.kick = options.kick * static_friction(arm) / self.limit
         self.depth = max([*options.lags, *options.command_lags], default=0) + 1
         self.fine = np.array([FINE[signal] for signal in self.signals])
         self.angle = self.signals.index("arm_angle")
@@ -75,7 +64,8 @@ class PolicyInterface:
         self.readings = np.zeros((self.depth, count, len(self.signals)))
         self.averages = np.zeros((len(self.fresh), count, len(self.signals)))
         self.commands = np.zeros((self.depth, count))
-        self.target, self.wanted, self.last = np.zeros(count), np.zeros(count), np.zeros(count)
+        self.target, self.wanted = np.zeros(count), np.zeros(count)
+        self.last = np.zeros((count, self.options.actions))
         self.command = np.zeros(count)
         if self.base:
             self.base.reset(count)
@@ -112,7 +102,7 @@ class PolicyInterface:
         if self.estimator:
             found += self._estimates(self.estimator)
         if self.base:
-            found += [self.wanted[:, None], self.last[:, None]]
+            found += [self.wanted[:, None], self.last]
         return np.concatenate(found, axis=1, dtype=np.float32)
 
     def _estimates(self, estimator: Estimator) -> list[Floats]:
@@ -126,10 +116,13 @@ class PolicyInterface:
         return [*columns, (self.payload / PAYLOAD_SCALE)[:, None]]
 
     def send(self, action: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
-        """Return the shares of the limit (count, 1) that an action (count, 1) means at this sample."""
-        self.last = np.clip(np.asarray(action, dtype=np.float64)[:, 0], -1.0, 1.0)
-        push = np.clip(self.last / WHOLE_KICK, -1.0, 1.0) * self.kick
-        share = np.clip(self.wanted + self.options.authority * self.last + push, -1.0, 1.0)
+        """Return the shares of the limit (count, 1) that an action (count, 1 or 2) means at this sample."""
+        options = self.options
+        self.last = np.clip(np.asarray(action, dtype=np.float64), -1.0, 1.0)
+        added = options.authority * self.last[:, 0]
+        if options.pulse and self.sample % options.repeat == 0:
+            added += options.pulse * self.last[:, 1]
+        share = np.clip(self.wanted + added, -1.0, 1.0)
         self.commands[self.sample % self.depth] = self.command = share
         acts = self.loads.through(share * self.limit)
         if self.estimator:

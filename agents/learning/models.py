@@ -81,5 +81,5 @@ def policy_arguments(plan: Plan, visible: int) -> dict[str, Any]:
 
 def bare_policy(plan: Plan, visible: int) -> BasePolicy:
     """Return an untrained policy that sees `visible` features, for weights to be put into."""
-    seen, action = spaces_of(visible)
+    seen, action = spaces_of(visible, plan.interface.actions)
     return POLICIES[plan.algorithm](seen, action, lambda _: 0.0, **policy_arguments(plan, visible))

@@ -47,7 +47,7 @@ class TwoViewPolicy(ActorCriticPolicy):
         self.mlp_extractor = TwoViews(self.visible, self.features_dim, layers, self.activation_fn)
         if self.own_spread:
             # made here, before the optimiser is
-            self.spread_net = torch.nn.Linear(self.mlp_extractor.latent_dim_pi, 1)
+            self.spread_net = torch.nn.Linear(self.mlp_extractor.latent_dim_pi, self.action_space.shape[0])
             torch.nn.init.zeros_(self.spread_net.weight)
             torch.nn.init.zeros_(self.spread_net.bias)
 

@@ -38,9 +38,16 @@ class InterfaceOptions:
     estimate: bool = option(True, "also show a Kalman filter's angle, bending, speeds and friction, and the payload estimate")
     base: str = option("none", "classical controller to whose command the action is added", allowed=("none", *CONTROLLERS))
     authority: float = option(1.0, "command at action 1, as a share of the drive's limit", 0.001, 2.0)
-    kick: float = option(0.0, "share of the believed static friction added in the direction of the action", 0.0, 2.0)
     repeat: int = option(2, "samples of 5 ms for which an action is held", 1, 100)
+    pulse: float = option(
+        0.0, "as authority, of a second action that is sent in the first of these samples only; 0: none", 0.0, 2.0
+    )
     privileged: bool = option(True, "PPO's critic alone also sees the true state and the drawn constants, in training only")
+
+    @property
+    def actions(self) -> int:
+        """How many numbers an action has."""
+        return 2 if self.pulse else 1
 
 
 @dataclass(frozen=True)
@@ -48,7 +55,8 @@ class RewardOptions:
     """What training rewards; evaluation measures something else, and does not see this.
 
     Each sample costs the tip's error and the vibration, both on a scale where halving them is worth the same whether they
-    are large or small: log(1 + size / scale), over that of 100° or 3 V.
+    are large or small: log(1 + size / scale), over that of 100° or 3 V. The vibration's size is that of the strain now and an
+    eighth of a second before, in quadrature: its amplitude at 2 Hz, and no more than that for the faster vibrations.
     """
 
     tip_scale: float = option(0.2, "error of the tip [deg] below which less is hardly worth anything", 1e-4, 100.0)

@@ -10,7 +10,7 @@ from flexarm_env.vector_env import FlexArmVectorEnv
 
 Floats = NDArray[np.float64]
 
-#: Frequency [Hz] at which the strain's rate counts as much as the strain itself: about that of the stuck arm.
+#: Frequency [Hz] of which the strain a quarter of a period before counts beside that of now: about that of the stuck arm.
 BEAM_FREQUENCY = 2.0
 #: Sizes at which the logarithmic costs are 1 [deg, V].
 WHOLE_ERROR, WHOLE_STRAIN = 100.0, 3.0
@@ -30,23 +30,25 @@ class TrainingReward:
         self.length = beam.get("length", 1.0)
         signals = list(envs.setup.arm.signals)
         self.gage = signals.index("strain_base") if "strain_base" in signals else None
-        self.rate = envs.setup.rate
+        self.quarter = max(round(envs.setup.rate / (4.0 * BEAM_FREQUENCY)), 1)
 
     def start(self, share: float) -> None:
         """Begin an episode of every arm, when that share of the training is over."""
         # at full weight from the start, a policy learns to stay away from where vibration costs
         self.vibration = self.options.vibration * (1.0 + share * (self.options.rise - 1.0))
-        self.strain = self._strain()
+        self.strains = np.tile(self._strain(), (self.quarter, 1))
+        self.passed = 0
         self.share = np.zeros(self.envs.num_envs)
 
     def sample(self) -> Floats:
         """Return the reward (arms,) of the sample that has just passed."""
         options, info = self.options, self.envs.batch.info()
-        before, self.strain = self.strain, self._strain()
-        swing = (self.strain - before) * self.rate / (2.0 * np.pi * BEAM_FREQUENCY)
+        strain, place = self._strain(), self.passed % self.quarter
+        before = self.strains[place].copy()
+        self.strains[place], self.passed = strain, self.passed + 1
         error = np.abs(info["hub_angle"] + info["tip_deflection"] / self.length - info["target"])
         far = _share(np.rad2deg(error), options.tip_scale, WHOLE_ERROR)
-        shaking = _share(np.hypot(self.strain, swing), options.strain_scale, WHOLE_STRAIN)
+        shaking = _share(np.hypot(strain, before), options.strain_scale, WHOLE_STRAIN)
         near = np.exp(-np.rad2deg(error) / options.near) if options.near > 0.0 else 1.0
         found: Floats = -far - options.distance * error - self.vibration * near * shaking
         return found

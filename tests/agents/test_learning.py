@@ -6,6 +6,7 @@ import json
 import pickle
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,8 +19,9 @@ from agents.learning.artefact import Artefact
 from agents.learning.episodes import RATE, EpisodeVecEnv
 from agents.learning.interface import PolicyInterface
 from agents.learning.models import make_model
-from agents.learning.options import ALGORITHMS, InterfaceOptions, Plan
+from agents.learning.options import ALGORITHMS, InterfaceOptions, Plan, RewardOptions
 from agents.learning.plan_file import option_table, read_plan, read_table
+from agents.learning.reward import TrainingReward
 from agents.learning.run import train
 from agents.measures import measure
 from agents.rollout import roll_out
@@ -267,14 +269,27 @@ def test_actions_that_are_to_stray_less_do() -> None:
     assert train(small(network=network | {"spread": "own"}), 0, None, silent).weights["spread_net.weight"].shape == (1, 8)
 
 
-def test_a_kick_is_what_static_friction_holds() -> None:
-    arm = Arm.load("thesis")
-    interface = PolicyInterface(InterfaceOptions(authority=0.1, kick=1.0), arm, 1.0 / RATE)
-    interface.start(3)
-    interface.see(np.zeros((3, 5)))
-    shares = interface.send(np.array([[0.05], [0.1], [-1.0]]))[:, 0]
-    whole = (0.282 + 0.076045) / (1.5 * 0.33) / 5.0
-    assert shares == pytest.approx([0.005 + whole / 2, 0.01 + whole, -0.1 - whole], rel=1e-6)
+def test_a_pulse_is_sent_in_the_first_sample_that_an_action_is_held_for() -> None:
+    interface = PolicyInterface(InterfaceOptions(authority=0.1, pulse=0.3, repeat=3), Arm.load("thesis"), 1.0 / RATE)
+    interface.start(2)
+    action = np.array([[0.5, 1.0], [-1.0, -0.5]])
+    sent = []
+    for _ in range(4):
+        interface.see(np.zeros((2, 5)))
+        sent.append(interface.send(action)[:, 0])
+    pulse, held = [0.05 + 0.3, -0.1 - 0.15], [0.05, -0.1]
+    np.testing.assert_allclose(sent, [pulse, held, held, pulse], rtol=1e-6)
+
+
+@pytest.mark.parametrize("algorithm", ["ppo", "sac"])
+def test_a_policy_with_pulses_is_trained_and_reloads(tmp_path: Path, algorithm: str) -> None:
+    interface = {"base": "pd", "pulse": 0.3, "repeat": 100}
+    made = train(small(algorithm=algorithm, interface=interface, network={"layers": [8], "spread": "own"}), 0, None, silent)
+    made.save(tmp_path / "pulses-0.safetensors")
+    agent, reading = Artefact.load(tmp_path / "pulses-0.safetensors").agent(), np.zeros((3, 5))
+    agent.reset(3)
+    assert agent.action(reading).shape == (3, 1)
+    assert agent.held.shape == (3, 2)
 
 
 def test_the_documentation_lists_every_option() -> None:
@@ -290,3 +305,25 @@ def test_vibration_weighs_more_as_training_goes_on() -> None:
         env.reset()
         weights.append(env.reward.vibration)
     assert weights == [0.5, 0.75, 1.0]  # 20 actions in each batch of episodes
+
+
+def vibration_costs(frequency: float, amplitude: float) -> np.ndarray:
+    """Rewards of 400 samples in which nothing is wrong but the base strain."""
+    arm = Arm.load("thesis")
+    nothing = {name: np.zeros(1) for name in ("hub_angle", "tip_deflection", "target")}
+    batch = SimpleNamespace(looks=np.zeros((1, 4)), info=lambda: nothing)
+    envs = SimpleNamespace(batch=batch, num_envs=1, setup=SimpleNamespace(arm=arm, rate=RATE))
+    reward, gage = TrainingReward(RewardOptions(), envs), list(arm.signals).index("strain_base")  # type: ignore[arg-type]
+    reward.start(0.0)
+    costs = []
+    for k in range(1, 401):
+        batch.looks[0, gage] = amplitude * np.sin(2.0 * np.pi * frequency * k / RATE)
+        costs.append(-reward.sample()[0])
+    return np.array(costs[100:])
+
+
+def test_the_cost_of_vibration_is_that_of_its_amplitude() -> None:
+    costs, scale, weight = vibration_costs(2.0, 0.03), 0.01, 0.5
+    np.testing.assert_allclose(costs, weight * np.log1p(0.03 / scale) / np.log1p(3.0 / scale), rtol=1e-9)
+    # a vibration ten times as fast costs no more, though its rate is ten times as large
+    assert vibration_costs(24.0, 0.03).mean() < costs.mean()
