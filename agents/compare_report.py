@@ -37,13 +37,17 @@ def report_of(result: Mapping[str, Any]) -> str:
 
 
 def _about(policies: Mapping[str, Any]) -> list[str]:
-    lines = ["| policy | algorithm | added to | runs | actions each | time each [s] |", "|---|---|---|---:|---:|---:|"]
+    lines = [
+        "| policy | algorithm | added to | pulses | runs | actions each | time each [s] |",
+        "|---|---|---|---|---:|---:|---:|",
+    ]
     for name, entry in policies.items():
         plan, runs = entry["plan"], entry["runs"]
+        pulses = "yes" if plan["interface"]["pulse"] else "no"
         times = [run["seconds"] for run in runs]
         lines.append(
-            f"| `{name}` | {plan['algorithm']} | {plan['interface']['base']} | {len(runs)} | {runs[0]['actions'] / 1e6:.1f} M "
-            f"| {min(times):.0f} to {max(times):.0f} |"
+            f"| `{name}` | {plan['algorithm']} | {plan['interface']['base']} | {pulses} | {len(runs)} "
+            f"| {runs[0]['actions'] / 1e6:.1f} M | {min(times):.0f} to {max(times):.0f} |"
         )
     return lines
 

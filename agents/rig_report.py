@@ -60,6 +60,7 @@ def report_of(result: Mapping[str, Any]) -> str:
     ]
     if result["not_made"]:
         lines += ["", f"Not made yet: {', '.join(result['not_made'])}; `python -m agents.sim_to_rig --make` goes on."]
+    lines += ["", *_in_short(result["cases"])]
     for case, found in result["cases"].items():
         diagnosis = result["diagnoses"][case]
         named = ", ".join(diagnosis["effects"]) or "none named"
@@ -69,15 +70,27 @@ def report_of(result: Mapping[str, Any]) -> str:
         for name, cell in found["cells"].items():
             parts = [f"{cell[key]['iqm']:.{d}f} ({cell[key]['low']:.{d}f} to {cell[key]['high']:.{d}f})" for key, _, d in COLUMNS]
             lines.append(f"| {name} | {found['runs'][name]} | " + " | ".join(parts) + " |")
-        lines += ["", *_gains(found["corrected_less_by"])]
     return "\n".join(lines) + "\n"
 
 
-def _gains(gains: Mapping[str, Any]) -> list[str]:
-    lines = ["Geometric mean of the three, for the corrected arm below that for the other:", ""]
-    for who, rivals in gains.items():
-        for rival, gain in rivals.items():
-            say = "better" if gain["low"] > 0.0 else "worse" if gain["high"] < 0.0 else "no difference"
-            share = [f"{100.0 * gain[key]:.0f} %" for key in ("value", "low", "high")]
-            lines.append(f"- {who}, {rival}: {share[0]} ({share[1]} to {share[2]}): {say}")
+def _in_short(cases: Mapping[str, Any]) -> list[str]:
+    lines = [
+        "By how much the geometric mean of settling time, error and strain is less for the corrected arm. Bold: the interval",
+        "excludes 0.",
+        "",
+        "| corrected | against | " + " | ".join(cases) + " |",
+        "|---|---|" + "---:|" * len(cases),
+    ]
+    pairs = dict.fromkeys(
+        (who, rival) for found in cases.values() for who, rivals in found["corrected_less_by"].items() for rival in rivals
+    )
+    for who, rival in pairs:
+        entries = [_gain(found["corrected_less_by"][who][rival]) for found in cases.values()]
+        lines.append(f"| {who} | {rival} | " + " | ".join(entries) + " |")
     return lines
+
+
+def _gain(gain: Mapping[str, float]) -> str:
+    value, low, high = (f"{100.0 * gain[key]:.0f} %" for key in ("value", "low", "high"))
+    text = f"{value} ({low} to {high})"
+    return f"**{text}**" if gain["low"] > 0.0 or gain["high"] < 0.0 else text
