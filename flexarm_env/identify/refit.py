@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
+from flexarm_env.identify.common_scale import best_scale, force_powers
 from flexarm_env.identify.coordinates import (
     Coordinate,
     base_coordinates,
@@ -167,8 +168,10 @@ def with_all(found: Refit, nominal: Arm, data: Data) -> Refit:
     problem.weigh(found.arm, held=False)
     x = position(found.arm, found.coordinates)
     solution = minimise(problem.residual, x, problem.prior, found.solution.reach, LAST_ITERATIONS, tolerance=AT_THE_END)
+    moved = solution.x - x
+    solution.x, _ = best_scale(problem, solution.x, force_powers(found.arm, found.coordinates))
     arm = place_values(found.arm, found.coordinates, solution.x)
-    return Refit(arm, found.coordinates, solution, problem, moved=solution.x - x)
+    return Refit(arm, found.coordinates, solution, problem, moved)
 
 
 def at_solution(found: Refit) -> Refit:
@@ -185,22 +188,6 @@ def at_solution(found: Refit) -> Refit:
     return replace(found, solution=solution)
 
 
-def _scale_spread(found: Refit) -> float:
-    """Return the relative standard deviation of the common scale of torques, inertias and stiffness.
-
-    Motion and the ratio of strain to its gain are the same on every scale, so that only the priors hold it, together.
-    """
-    free = [c for c in found.coordinates if not c.scale and _has_force(c.path, found)]
-    if not any(c.path == "drive.torque_constant" for c in free):
-        return 0.0
-    return float(np.sum([c.prior**-2.0 for c in free]) ** -0.5)
-
-
-def _has_force(path: str, found: Refit) -> bool:
-    unit = found.arm.parameter(path).unit
-    return "N" in unit or "kg" in unit
-
-
 def estimates(found: Refit, nominal: Arm) -> list[Estimate]:
     """Return every fitted value with its 90 % interval.
 
@@ -211,12 +198,13 @@ def estimates(found: Refit, nominal: Arm) -> list[Estimate]:
     block = max(int(BLOCK / found.problem.data.interval), 1) * len(found.problem.data.signals)
     spread = covariance(found.solution.jacobian, found.solution.residual, prior, block)
     variance = np.maximum(np.diag(spread), 0.0) + (0.0 if found.moved is None else found.moved**2)
-    common = _scale_spread(found)
-    relative = [np.hypot(BEST_MODEL, common if _has_force(c.path, found) else 0.0) for c in found.coordinates]
+    powers = force_powers(found.arm, found.coordinates)
+    _, common = best_scale(found.problem, found.solution.x, powers)
+    relative = np.hypot(BEST_MODEL, common * np.abs(powers))
     sizes = [
         abs(c.value(float(x))) / c.scale if c.scale else 1.0 for c, x in zip(found.coordinates, found.solution.x, strict=True)
     ]
-    least = np.array(relative) * np.array(sizes)
+    least = relative * np.array(sizes)
     sigma = np.sqrt(variance + np.square(least))
     out = []
     for c, x, s in zip(found.coordinates, found.solution.x, sigma, strict=True):

@@ -1,0 +1,69 @@
+"""The scale of torques, inertias and stiffness: no motion shows it, so priors set it, or a known payload."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flexarm_env import Arm, simulate
+from flexarm_env.identify.common_scale import best_scale, force_power, force_powers, rescaled
+from flexarm_env.identify.coordinates import place_values, position
+from flexarm_env.identify.data import prepare
+from flexarm_env.identify.problem import Problem
+from flexarm_env.identify.refit import free_coordinates
+
+
+@pytest.mark.parametrize(
+    ("unit", "power"),
+    [("N*m", 1), ("kg/m", 1), ("Nm/A", 1), ("N*s**2/m**3", 1), ("V/N/m", -1), ("rad/(N*m)", -1), ("rad/s", 0), ("V", 0), ("", 0)],
+)
+def test_how_a_unit_goes_with_forces(unit, power):
+    assert force_power(unit) == power
+
+
+def problem_of(payload=0.0):
+    """The nominal arm against its own motion under a pulse, with a payload that the recording states."""
+    arm = Arm.load("thesis-fem").with_effect("cable_stiffness", stiffness=0.1, rest_angle=0.2)
+    machine = arm.with_effect("payload", mass=payload) if payload else arm
+    recording = replace(simulate(machine, "pulse", duration=3.0, rate=200.0, seed=1), conditions={"payload": payload})
+    nominal, data = prepare(arm, [recording])
+    coordinates = free_coordinates(nominal, nominal, data)
+    problem = Problem(nominal, data, coordinates, 0.0, np.ones((1, 4)))
+    problem.weigh(nominal, held=False)
+    return problem, position(nominal, coordinates), force_powers(nominal, coordinates)
+
+
+def test_motion_is_the_same_on_every_scale():
+    problem, x, powers = problem_of()
+    other = rescaled(problem.coordinates, x, powers, 0.3)
+    arm = place_values(problem.arm, problem.coordinates, other)
+    for path, power in (("hub.inertia", 1), ("effects.cable_stiffness.stiffness", 1), ("sensors.strain_mid.gain", -1)):
+        assert arm.value(path) == pytest.approx(np.exp(0.3 * power) * problem.arm.value(path), rel=1e-12)
+    assert arm.value("effects.cable_stiffness.rest_angle") == problem.arm.value("effects.cable_stiffness.rest_angle")
+    np.testing.assert_allclose(problem.residual(other), problem.residual(x), atol=1e-6)
+
+
+def test_priors_set_a_scale_that_nothing_else_does():
+    problem, x, powers = problem_of()
+    found, spread = best_scale(problem, rescaled(problem.coordinates, x, powers, 0.2), powers)
+    # the priors' centres are the nominal arm's values, at x = 0
+    np.testing.assert_allclose(found, x, atol=1e-4)
+    priors = np.array([c.prior for c in problem.coordinates])
+    assert spread == pytest.approx(np.sum((powers / priors) ** 2) ** -0.5, rel=1e-3)
+
+
+def test_a_known_payload_sets_the_scale():
+    problem, x, powers = problem_of(payload=0.15)
+    found, spread = best_scale(problem, x, powers)
+    assert spread < 0.002
+    assert np.abs(found - x).max() < 0.005
+
+
+def test_a_known_torque_constant_leaves_no_scale():
+    problem, x, _ = problem_of()
+    rest = [c for c in problem.coordinates if c.path != "drive.torque_constant"]
+    powers = force_powers(problem.arm, rest)
+    assert not powers.any()
+    assert best_scale(problem, x, powers)[1] == 0.0
