@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 pytest.importorskip("stable_baselines3")
@@ -13,11 +15,16 @@ from agents.compare import evaluate_policies, find_policies
 from agents.goals import GOALS, cell_of
 from agents.learning.artefact import Artefact
 from agents.learning.plan_file import read_plan
+from agents.measures import measure
+from agents.rig import drive
+from agents.sim_to_rig import CASES, PLANS, plan_of, policies_of
+from flexarm_env.tasks import TASKS
 
 PROJECT = Path(__file__).parents[2]
 RESULTS = PROJECT / "results"
 STORED = sorted(RESULTS.glob("*/weights/*.safetensors"))
 TABLE = RESULTS / "policies" / "policies.json"
+MACHINE = RESULTS / "sim_to_rig"
 
 
 def test_there_are_some_and_they_are_small() -> None:
@@ -56,3 +63,32 @@ def test_the_table_is_made_again_from_what_is_stored() -> None:
     for name in GOALS:
         # a stick-slip trajectory may go another way where a processor rounds otherwise
         assert again[name]["iqm"] == pytest.approx(cells[name]["iqm"], rel=0.02)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_machines_policies_were_trained_by_their_plans(case: str) -> None:
+    for kind in PLANS:
+        _, plan = plan_of(kind, case if kind == "corrected" else None, MACHINE)
+        for path in policies_of(MACHINE, kind, case):
+            # where the corrected arm lies is written from the folder in which the policy was trained
+            assert replace(Artefact.load(path).plan, arm="") == replace(plan, arm="")
+
+
+def test_the_machines_table_is_of_what_is_stored() -> None:
+    result = json.loads((MACHINE / "sim_to_rig.json").read_text(encoding="utf-8"))
+    assert set(result["cases"]) == set(CASES)
+    for case, found in result["cases"].items():
+        assert result["diagnoses"][case]["effects"] == [CASES[case][1]]
+        for kind in PLANS:
+            assert found["runs"][f"policy, {kind}"] == len(policies_of(MACHINE, kind, case)) >= 3
+
+
+@pytest.mark.slow
+def test_what_a_policy_does_on_the_machine_is_measured_again() -> None:
+    result = json.loads((MACHINE / "sim_to_rig.json").read_text(encoding="utf-8"))
+    agents = [Artefact.load(path).agent() for path in policies_of(MACHINE, "corrected", "cable")]
+    runs = [measure(drive(agent, TASKS["slew"], CASES["cable"][0], result["episodes"]), TASKS["slew"]) for agent in agents]
+    again = cell_of({name: np.array([run[name] for run in runs]) for name in GOALS})
+    for name in GOALS:
+        stored = result["cases"]["cable"]["cells"]["policy, corrected"][name]["iqm"]
+        assert again[name]["iqm"] == pytest.approx(stored, rel=0.05), name
