@@ -22,6 +22,7 @@ from flexarm_env.identify.data import Data, everything, torque_scale
 from flexarm_env.identify.least_squares import Solution, covariance, jacobian, minimise
 from flexarm_env.identify.problem import Problem, rms_by_run, score
 from flexarm_env.identify.results import Estimate
+from flexarm_env.identify.settle import settled
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float, str], None]
@@ -169,7 +170,7 @@ def with_all(found: Refit, nominal: Arm, data: Data) -> Refit:
     x = position(found.arm, found.coordinates)
     solution = minimise(problem.residual, x, problem.prior, found.solution.reach, LAST_ITERATIONS, tolerance=AT_THE_END)
     moved = solution.x - x
-    solution.x, _ = best_scale(problem, solution.x, force_powers(found.arm, found.coordinates))
+    solution.x = settled(problem, solution.x)
     arm = place_values(found.arm, found.coordinates, solution.x)
     return Refit(arm, found.coordinates, solution, problem, moved)
 

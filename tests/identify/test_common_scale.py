@@ -11,8 +11,10 @@ from flexarm_env import Arm, simulate
 from flexarm_env.identify.common_scale import best_scale, force_power, force_powers, rescaled
 from flexarm_env.identify.coordinates import place_values, position
 from flexarm_env.identify.data import prepare
+from flexarm_env.identify.least_squares import cost_of
 from flexarm_env.identify.problem import Problem
 from flexarm_env.identify.refit import free_coordinates
+from flexarm_env.identify.settle import gauss_newton, settled
 
 
 @pytest.mark.parametrize(
@@ -67,3 +69,27 @@ def test_a_known_torque_constant_leaves_no_scale():
     powers = force_powers(problem.arm, rest)
     assert not powers.any()
     assert best_scale(problem, x, powers)[1] == 0.0
+
+
+def test_the_last_stretch_ends_where_the_normal_equations_say():
+    draw = np.random.default_rng(0)
+    matrix = draw.standard_normal((30, 4)) * np.array([1e4, 1.0, 1e-3, 1.0])
+    matrix[:, 3] = matrix[:, 1]  # these two show together only
+    aim, prior = draw.standard_normal(30), np.array([0.1, 0.2, 0.3, 0.4])
+    found = gauss_newton(lambda x: matrix @ x - aim, np.array([0.3, -0.2, 0.1, 0.5]), prior)
+    exact = np.linalg.solve(matrix.T @ matrix + np.diag(prior**-2.0), matrix.T @ aim)
+    np.testing.assert_allclose(found, exact, atol=1e-6)
+
+
+def test_a_fit_settles_where_inertia_was_shared_wrongly_between_motor_and_hub():
+    problem, x, _ = problem_of()
+    paths = [c.path for c in problem.coordinates]
+    motor, hub = paths.index("drive.motor_inertia"), paths.index("hub.inertia")
+    there = x.copy()
+    there[motor] += 0.1
+    arm_side = problem.arm.constants["drive"]["gear_ratio"] ** 2 * problem.arm.value("drive.motor_inertia")
+    there[hub] = np.log(1.0 - arm_side * (np.exp(0.1) - 1.0) / problem.arm.value("hub.inertia"))
+    found = settled(problem, there)
+    before, after, true = (cost_of(problem.residual(at), at, problem.prior) for at in (there, found, x))
+    assert before > true + 100.0
+    assert after <= true  # noise has its own idea of the truth
