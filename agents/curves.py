@@ -27,7 +27,7 @@ def draw_curves(policies: Mapping[str, Sequence[Artefact]], path: Path) -> None:
         grid = max(curves, key=len)[:, 0]
         middle = np.median([np.interp(grid, curve[:, 0], curve[:, 1]) for curve in curves], axis=0)
         panel.plot(grid / 1e6, middle, color="#12395b", linewidth=2.0)
-        panel.set_title(f"{name}: {len(runs)} runs", fontsize=10)
+        panel.set_title(f"{name}: {len(runs)} run{'s' if len(runs) > 1 else ''}", fontsize=10)
         panel.set_xlabel("actions [10⁶]")
         panel.set_ylabel("mean return of an episode")
         panel.grid(alpha=0.3)

@@ -26,6 +26,8 @@ LEVELS = (3e-3, 3e-4, 3e-5)
 DIFFERENCE, ITERATIONS, TOLERANCE = 1e-5, 5, 1e-4
 #: Dampings that are tried in turn, over the priors' weight.
 DAMPINGS = (0.0, 1e1, 1e2, 1e3, 1e4)
+#: Error over noise above which a model lacks something, so that its nearest minimum is not the machine.
+LACKS = 1.4
 
 
 def gauss_newton(residual: Residual, x: Floats, prior: Floats, dampings: Sequence[float] = DAMPINGS) -> Floats:
@@ -56,16 +58,18 @@ def gauss_newton(residual: Residual, x: Floats, prior: Floats, dampings: Sequenc
 
 
 def settled(problem: Problem, x: Floats) -> Floats:
-    """Return x on the best common scale and as far as it goes, or on that scale only where the rest did not help.
+    """Return x on the best common scale and as far as it goes; on that scale only, if the rest does not help or lacks something.
 
     Args:
-        problem: in which x is judged, at the arm's own torque noise.
+        problem: in which x is judged, weighed by what the fit left, at the arm's own torque noise.
         x: where a fit ended (x,).
     """
     arm, coordinates = problem.arm, problem.coordinates
     powers = force_powers(arm, coordinates)
     scale, own = torque_scale(arm, problem.data.runs), problem.torque_noise
     x, _ = best_scale(problem, x, powers)
+    if np.sqrt(np.mean((problem.sigma / problem.data.noise) ** 2)) > LACKS:
+        return x
     other = x
     for noise in [level * scale for level in LEVELS if level * scale > own] + [own]:
         level = Problem(arm, problem.data, coordinates, noise, np.ones_like(problem.sigma))
