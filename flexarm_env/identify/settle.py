@@ -7,8 +7,6 @@ through them to the free one.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -30,14 +28,13 @@ DAMPINGS = (0.0, 1e1, 1e2, 1e3, 1e4)
 LACKS = 1.4
 
 
-def gauss_newton(residual: Residual, x: Floats, prior: Floats, dampings: Sequence[float] = DAMPINGS) -> Floats:
+def gauss_newton(residual: Residual, x: Floats, prior: Floats) -> Floats:
     """Return where |residual(x)|² + |x / prior|² ends that falls from x.
 
     Args:
         residual: whitened residual (rows,).
         x: where to start (x,).
         prior: standard deviation of each x around 0.
-        dampings: that are tried until the cost falls.
     """
     r = residual(x)
     cost = cost_of(r, x, prior)
@@ -45,7 +42,7 @@ def gauss_newton(residual: Residual, x: Floats, prior: Floats, dampings: Sequenc
         j = jacobian(residual, x, np.full(len(x), DIFFERENCE)) * prior
         strengths, axes = np.linalg.eigh(j.T @ j)
         slope, before = axes.T @ (j.T @ r + x / prior), cost
-        for damping in dampings:
+        for damping in DAMPINGS:
             trial = x - prior * (axes @ (slope / (strengths + 1.0 + damping)))
             left = residual(trial)
             new = cost_of(left, trial, prior)
