@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.controllers.loads import KnownLoads
+from flexarm_env.controllers.loads import KnownLoads, torque_by_command
 from flexarm_env.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -49,11 +49,9 @@ class Controller(ABC):
                 f"add [sensors.{missing[0]}] to the arm or choose another controller"
             )
         self.arm, self.interval, self.signals = arm, interval, signals
-        drive = arm.constants["drive"]
-        self.limit = drive["limit"]
-        amps_per_command = 1.0 / drive["resistance"] if arm.input == "voltage" else 1.0
+        self.limit = arm.constants["drive"]["limit"]
         #: Torque on the hub per command [Nm/A or Nm/V] of a motor that stands still.
-        self.hub_torque_per_command = drive["gear_ratio"] * drive["torque_constant"] * amps_per_command
+        self.hub_torque_per_command = torque_by_command(arm)
         self.loads = KnownLoads(arm)
         self._count: int | None = None
         self._width = -1

@@ -6,12 +6,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.plant.structure import torque_by_command
 
 Floats = NDArray[np.float64]
 
 #: Share of a dead zone's width below which a wanted command grows into it evenly, so that noise about 0 is not thrown across.
 EDGE = 0.25
+
+
+def torque_by_command(arm: Arm) -> float:
+    """Return the torque on the hub per command [Nm/A or Nm/V] of a motor that stands still."""
+    drive = arm.constants["drive"]
+    amps_by_command = 1.0 / drive["resistance"] if arm.input == "voltage" else 1.0
+    return float(drive["gear_ratio"] * drive["torque_constant"] * amps_by_command)
 
 
 class KnownLoads:
@@ -23,7 +29,7 @@ class KnownLoads:
 
     def __init__(self, arm: Arm) -> None:
         structure = arm.structure()
-        torque = torque_by_command(structure)
+        torque = torque_by_command(arm)
         self.stiffness, self.torque = structure.hub_stiffness / torque, structure.hub_torque / torque
         self.dead_zone = float(dict(arm.present()).get("dead_zone", {}).get("width", 0.0))
 
