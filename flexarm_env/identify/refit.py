@@ -156,9 +156,12 @@ def with_effects_of(arm: Arm, nominal: Arm) -> Arm:
 
 
 def put_back(found: Refit, nominal: Arm, strayed: float) -> Arm:
-    """Return the arm with those constants as they were nominally that moved by more standard deviations of their priors."""
-    pairs = zip(found.coordinates, found.solution.x, strict=True)
-    far = [c.path for c, x in pairs if c.is_constant and abs(x) > strayed * c.prior]
+    """Return the arm with those constants as they were nominally that moved by more standard deviations of their priors.
+
+    Where none did, all of them: so little may make up for an effect, too, and what is right is near.
+    """
+    pairs = [(c, abs(x) / c.prior) for c, x in zip(found.coordinates, found.solution.x, strict=True) if c.is_constant]
+    far = [c.path for c, moved in pairs if moved > strayed] or [c.path for c, _ in pairs]
     return found.arm.with_values({path: nominal.value(path) for path in far})
 
 

@@ -127,20 +127,28 @@ class Search:
 
         Constants that made up for the missing effect leave nothing for its signature to explain.
         """
-        began = {trial.effect: trial.arm.effects[trial.effect] for trial in trials if trial.effect}
         names = [n for n in candidates(self.found.arm) if self.found.arm.known[n].fitted and n not in tried]
         straight = put_back(self.found, self.nominal, BENT)
-        arms = [straight.with_effect(n, **(began.get(n) or first_start(straight, n, self.data.scales))) for n in names]
-        tasks = [delayed(fit_briefly)(arm, self.nominal, self.data) for arm in (*arms, straight)]
-        fits: list[tuple[float, str, Refit]] = []
-        for i, (name, (error, found)) in enumerate(zip([*names, ""], self._parallel(tasks), strict=True)):
-            fits.append((error, name, found))
+        starts = [(n, start) for n in names for start in self._starts_of(n, straight, trials)]
+        arms = [straight.with_effect(n, **start) for n, start in starts]
+        tasks = [delayed(fit_briefly)(arm, self.nominal, self.data) for arm in (straight, *arms)]
+        fits: dict[str, tuple[float, Refit]] = {}
+        for i, (name, fit) in enumerate(zip(["", *(n for n, _ in starts)], self._parallel(tasks), strict=True)):
+            fits[name] = min(fit, fits.get(name, fit), key=lambda f: f[0])
             self.say(done + 0.6 * share * (i + 1) / len(tasks), f"fitting {name or 'nothing'} and all constants")
-        control = excess(fits.pop()[0])
-        best = sorted((fit for fit in fits if excess(fit[0]) < BRIEFLY_BETTER * control), key=lambda fit: fit[0])[:FINALISTS]
+        control = excess(fits.pop("")[0])
+        better = [(error, name, found) for name, (error, found) in fits.items() if excess(error) < BRIEFLY_BETTER * control]
+        best = sorted(better, key=lambda fit: fit[0])[:FINALISTS]
         chosen = [f.arm for _, _, f in best]
         far = best[0][0] > FAR_OFF if best else False
         return self._refit_all([(n,) for _, n, _ in best], chosen, done + 0.6 * share, 0.4 * share, thorough=far)
+
+    def _starts_of(self, effect: str, arm: Arm, trials: list[Trial]) -> list[dict[str, float]]:
+        """Return what an effect is fitted from: where its trial ended, and its own start if that did not help."""
+        control = next(t.cost for t in trials if not t.effect)
+        own = [(t.arm.effects[effect], t.cost < control) for t in trials if t.effect == effect]
+        first = [] if any(helped for _, helped in own) else [first_start(arm, effect, self.data.scales)]
+        return [dict(start) for start, _ in own] + first
 
     def _accept(self, found: list[Hypothesis]) -> bool:
         """Take the best hypothesis if it removes enough; the simplest of those that remove nearly as much."""
