@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.controllers.loads import KnownLoads, torque_by_command
+from flexarm_env.controllers.loads import KnownLoads
 from flexarm_env.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -51,7 +51,7 @@ class Controller(ABC):
         self.arm, self.interval, self.signals = arm, interval, signals
         self.limit = arm.constants["drive"]["limit"]
         #: Torque on the hub per command [Nm/A or Nm/V] of a motor that stands still.
-        self.hub_torque_per_command = torque_by_command(arm)
+        self.hub_torque_per_command = arm.structure().torque_by_command
         self.loads = KnownLoads(arm)
         self._count: int | None = None
         self._width = -1

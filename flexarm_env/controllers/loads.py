@@ -13,13 +13,6 @@ Floats = NDArray[np.float64]
 EDGE = 0.25
 
 
-def torque_by_command(arm: Arm) -> float:
-    """Return the torque on the hub per command [Nm/A or Nm/V] of a motor that stands still."""
-    drive = arm.constants["drive"]
-    amps_by_command = 1.0 / drive["resistance"] if arm.input == "voltage" else 1.0
-    return float(drive["gear_ratio"] * drive["torque_constant"] * amps_by_command)
-
-
 class KnownLoads:
     """Adds to commands what holds the hub at its target against known loads, and what crosses a known dead zone.
 
@@ -29,7 +22,7 @@ class KnownLoads:
 
     def __init__(self, arm: Arm) -> None:
         structure = arm.structure()
-        torque = torque_by_command(arm)
+        torque = structure.torque_by_command
         self.stiffness, self.torque = structure.hub_stiffness / torque, structure.hub_torque / torque
         self.dead_zone = float(dict(arm.present()).get("dead_zone", {}).get("width", 0.0))
 

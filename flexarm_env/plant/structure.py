@@ -84,6 +84,16 @@ class Structure:
         """Stiffness of the touching gears, arm side [Nm/rad]."""
         return 1.0 / self.gear_compliance if exceeds(self.gear_compliance, LEAST_COMPLIANCE) else GEAR_STIFFNESS
 
+    @property
+    def amps_by_command(self) -> float:
+        """What a command of 1 makes of the motor's current at rest [A/A or A/V]."""
+        return 1.0 / self.resistance if exceeds(self.resistance, 0.0) else 1.0
+
+    @property
+    def torque_by_command(self) -> float:
+        """What a command of 1 makes of the drive's torque at rest, arm side [Nm/A or Nm/V]."""
+        return self.gear_ratio * self.torque_constant * self.amps_by_command
+
 
 def stacked(structures: Sequence[Structure]) -> Structure:
     """Return arms of one kind, which differ in their numbers only, as one structure whose quantities are (arms,)."""
@@ -178,23 +188,13 @@ def _node_names(elements: int) -> list[str]:
     return [name for node in range(1, elements + 1) for name in (f"deflection_{node}", f"slope_{node}")]
 
 
-def amps_by_command(s: Structure) -> float:
-    """Return what a command of 1 makes of the motor's current at rest [A/A or A/V]."""
-    return 1.0 / s.resistance if exceeds(s.resistance, 0.0) else 1.0
-
-
-def torque_by_command(s: Structure) -> float:
-    """Return what a command of 1 makes of the drive's torque at rest, arm side [Nm/A or Nm/V]."""
-    return s.gear_ratio * s.torque_constant * amps_by_command(s)
-
-
 def _drive(s: Structure, names: list[str], motor: int, mass: Matrix, damping: Matrix, stiffness: Matrix) -> LinearModel:
     size, arms = len(names), mass.shape[:-2]
     drivers = np.zeros((*arms, size, len(DRIVERS)))
     drivers[..., 0, HUB_TORQUE] = 1.0
     drivers[..., motor, MOTOR_TORQUE] = 1.0 if s.separate_motor else 0.0
     drivers[..., 0, ONE] = s.hub_torque
-    torque_per_amp, amps_per_command = s.gear_ratio * s.torque_constant, amps_by_command(s)
+    torque_per_amp, amps_per_command = s.gear_ratio * s.torque_constant, s.amps_by_command
     amps_per_speed = -torque_per_amp / s.resistance if exceeds(s.resistance, 0.0) else 0.0
     lagged = exceeds(s.current_lag, 0.0)
     extra = int(lagged)

@@ -13,15 +13,7 @@ from flexarm_env.plant import layout as at
 from flexarm_env.plant.beam import Matrix, spread_out, turned
 from flexarm_env.plant.modal import Mode, complete, mode_of
 from flexarm_env.plant.slide import DEPTH, table_size
-from flexarm_env.plant.structure import (
-    DRIVERS,
-    HUB_TORQUE,
-    MOTOR_TORQUE,
-    LinearModel,
-    Structure,
-    exceeds,
-    torque_by_command,
-)
+from flexarm_env.plant.structure import DRIVERS, HUB_TORQUE, MOTOR_TORQUE, LinearModel, Structure, exceeds
 
 RESPONSE = 5
 #: Longest steps [s] over which a force that depends on the motion is fitted by one quartic; with drag, by a parabola.
@@ -119,7 +111,7 @@ def pack(
     d[..., at.EARLY_LENGTH], d[..., at.LATE_LENGTH] = lengths[..., 0], lengths[..., 1]
     d[..., at.LOAD_STIFFNESS] = structure.gear_stiffness
     d[..., at.LOAD_DAMPING] = structure.gear_damping_time * structure.gear_stiffness
-    d[..., at.LOAD_BY_COMMAND] = torque_by_command(structure)
+    d[..., at.LOAD_BY_COMMAND] = structure.torque_by_command
     shares = np.array([[law.motor_share if bodies == 2 else 0.0 for law in own if law.port == "friction"] for own in laws])
     d[..., at.HUB_RUBS] = np.sum(1.0 - shares, axis=-1).reshape(arms)
     d[..., at.MOTOR_RUBS] = np.sum(shares, axis=-1).reshape(arms)
