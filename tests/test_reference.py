@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from reference import Array, ReferenceArm, frequencies, pulse_current, white_noise_current, witness
+from reference import ReferenceArm, frequencies, pulse_current, white_noise_current, witness
+from reference.arm import Array
 
 DT = 0.005  # s
 SIGNALS = ("hub_angle", "hub_speed", "tip", "tip_slope")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import math
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -16,26 +15,14 @@ from numpy.typing import ArrayLike, NDArray
 from flexarm_env.display import Shown
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import write_whole
-from flexarm_env.identify.columns import (
-    UNITS,
-    ColumnMap,
-    check_calibration,
-    check_names,
-    load_columns,
-    si_factor,
-)
+from flexarm_env.identify.columns import UNITS, ColumnMap, check_calibration, check_names, load_columns, si_factor
 from flexarm_env.identify.matlab import read_matlab
-from flexarm_env.identify.readers import (
-    CONDITIONS,
-    Table,
-    fault,
-    read_bytes,
-    read_text_table,
-)
+from flexarm_env.identify.readers import CONDITIONS, Table, fault, read_bytes, read_text_table
+from flexarm_env.identify.recording_checks import as_vector, check_conditions, check_samples
+from flexarm_env.identify.recording_files import PathLike, files_of
 from flexarm_env.signals import INPUTS, SIGNALS
 
 Floats = NDArray[np.float64]
-PathLike = str | os.PathLike[str]
 Columns = PathLike | Mapping[str, Any] | ColumnMap
 
 GAP = 3.0  # a step of more than this many median steps is a gap
@@ -131,7 +118,7 @@ class Recording(Shown):
         if reference is not None:
             columns["reference"] = reference
         try:
-            arrays = {column: _array(column, values) for column, values in columns.items()}
+            arrays = {column: as_vector(column, values) for column, values in columns.items()}
             return _recording(name, arrays, dict(conditions or {}), (), measured)
         except InputError as error:
             raise InputError(f"{name}: {error}") from None
@@ -183,7 +170,7 @@ class Recording(Shown):
         Raises:
             InputError: as `read`; for a folder without CSV files; for a file named twice.
         """
-        files = _files([paths] if isinstance(paths, (str, os.PathLike)) else paths)
+        files = files_of([paths] if isinstance(paths, (str, os.PathLike)) else paths)
         layout = None if columns is None else load_columns(columns, measured)
         recordings = [cls.read(file, layout, calibration, measured) for file in files]
         return _distinct(recordings)
@@ -247,16 +234,6 @@ def _si(name: str, table: Table, calibration: Mapping[str, float]) -> Floats:
         return (values - values[0] if name == "time" else values) * factor
 
 
-def _array(name: str, values: ArrayLike) -> Floats:
-    try:
-        array = np.array(values)
-    except ValueError:  # a ragged list
-        array = np.array(None)
-    if array.ndim != 1 or array.dtype.kind not in "fiu":
-        raise InputError(f"'{name}' is no vector of real numbers; give an array of shape (n,)")
-    return array.astype(np.float64)
-
-
 def _recording(
     name: str, arrays: dict[str, Floats], conditions: dict[str, float], lines: Sequence[int], measured: bool = True
 ) -> Recording:
@@ -273,8 +250,8 @@ def _recording(
         raise InputError(f"has {lengths['time']} samples; it needs at least two")
     with np.errstate(over="ignore", invalid="ignore"):
         arrays["time"] = arrays["time"] - arrays["time"][0]
-    _check_samples(arrays, lines)
-    _check_conditions(conditions)
+    check_samples(arrays, lines)
+    check_conditions(conditions)
     return Recording(
         name=name,
         time=arrays["time"],
@@ -284,55 +261,6 @@ def _recording(
         reference=arrays.get("reference"),
         conditions=conditions,
     )
-
-
-def _check_samples(arrays: Mapping[str, Floats], lines: Sequence[int]) -> None:
-    """Raise InputError at the first number that is not finite, or step of time that does not go up."""
-
-    def place(sample: int) -> str:
-        return f"row {lines[sample]}" if lines else f"sample {sample + 1}"
-
-    for column, values in arrays.items():
-        bad = np.flatnonzero(~np.isfinite(values))
-        if bad.size:
-            raise InputError(f"{place(bad[0])}, column '{column}': is {values[bad[0]]}; correct it or remove the row")
-    time = arrays["time"]
-    back = np.flatnonzero(np.diff(time) <= 0)
-    if back.size:
-        i = int(back[0])
-        what = "repeats" if time[i + 1] == time[i] else "goes back"
-        raise InputError(
-            f"{place(i + 1)}, column 'time': {what}, {time[i + 1]:.9g} s after {time[i]:.9g} s"
-            " (from the first sample); sort the rows and remove repeated ones"
-        )
-
-
-def _check_conditions(conditions: Mapping[str, float]) -> None:
-    for name, value in conditions.items():
-        if not name.isidentifier() or not name.isascii():
-            raise InputError(f"condition {name!r}: write its name in letters, digits and _")
-        if not math.isfinite(value) or (name == "payload" and value < 0):
-            raise InputError(f"condition '{name}' is {value}; write a finite number, for payload one not below 0")
-
-
-def _files(paths: Iterable[PathLike]) -> list[Path]:
-    """Return the files that paths name, folders replaced by their CSV files, in order."""
-    files: list[Path] = []
-    for path in map(Path, paths):
-        try:
-            inside = sorted(p for p in path.iterdir() if _is_csv(p)) if path.is_dir() else [path]
-        except OSError as error:
-            raise fault(path, f"cannot be read: {error.strerror}; check its permissions") from None
-        if not inside:
-            raise fault(path, "a folder without CSV files; name the files, or another folder")
-        files += inside
-    if not files:
-        raise InputError("no recordings; name a file or a folder")
-    places = [os.path.realpath(file) for file in files]
-    for i, place in enumerate(places):
-        if place in places[:i]:
-            raise fault(files[i], "named twice; name each recording once")
-    return files
 
 
 def _distinct(recordings: list[Recording]) -> list[Recording]:
@@ -346,7 +274,3 @@ def _distinct(recordings: list[Recording]) -> list[Recording]:
         if len(set(names)) == len(names):
             break
     return [replace(recording, name=name) for recording, name in zip(recordings, names, strict=True)]
-
-
-def _is_csv(path: Path) -> bool:
-    return path.suffix.lower() == ".csv" and not path.name.startswith(".") and not path.is_dir()

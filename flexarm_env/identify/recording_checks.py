@@ -1,0 +1,54 @@
+"""What arrays and conditions must be to make a recording."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flexarm_env.errors import InputError
+
+Floats = NDArray[np.float64]
+
+
+def as_vector(name: str, values: ArrayLike) -> Floats:
+    """Return a copy of numbers as (n,) floats, or raise InputError."""
+    try:
+        array = np.array(values)
+    except ValueError:  # a ragged list
+        array = np.array(None)
+    if array.ndim != 1 or array.dtype.kind not in "fiu":
+        raise InputError(f"'{name}' is no vector of real numbers; give an array of shape (n,)")
+    return array.astype(np.float64)
+
+
+def check_samples(arrays: Mapping[str, Floats], lines: Sequence[int]) -> None:
+    """Raise InputError at the first number that is not finite, or step of time that does not go up."""
+
+    def place(sample: int) -> str:
+        return f"row {lines[sample]}" if lines else f"sample {sample + 1}"
+
+    for column, values in arrays.items():
+        bad = np.flatnonzero(~np.isfinite(values))
+        if bad.size:
+            raise InputError(f"{place(bad[0])}, column '{column}': is {values[bad[0]]}; correct it or remove the row")
+    time = arrays["time"]
+    back = np.flatnonzero(np.diff(time) <= 0)
+    if back.size:
+        i = int(back[0])
+        what = "repeats" if time[i + 1] == time[i] else "goes back"
+        raise InputError(
+            f"{place(i + 1)}, column 'time': {what}, {time[i + 1]:.9g} s after {time[i]:.9g} s"
+            " (from the first sample); sort the rows and remove repeated ones"
+        )
+
+
+def check_conditions(conditions: Mapping[str, float]) -> None:
+    """Raise InputError for a condition whose name or value no header can hold."""
+    for name, value in conditions.items():
+        if not name.isidentifier() or not name.isascii():
+            raise InputError(f"condition {name!r}: write its name in letters, digits and _")
+        if not math.isfinite(value) or (name == "payload" and value < 0):
+            raise InputError(f"condition '{name}' is {value}; write a finite number, for payload one not below 0")
