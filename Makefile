@@ -50,7 +50,7 @@ train: $(DEV) ## train again what is not in results/: delete policies first; hou
 results: demo thesis baselines policies bench ## make again what results/ holds
 
 docs: $(DEV) ## run the snippets in the documentation
-	$(BIN)/python -m pytest -m "slow or not slow" tests/test_docs.py
+	$(BIN)/python -m pytest -m "slow or not slow" tests/test_docs.py tests/test_docs_numbers.py
 
 clean-cache: ## forget compiled kernels: numba does not see edits in other files
 	find . -path ./$(VENV) -prune -o \( -name '*.nbi' -o -name '*.nbc' \) -exec rm -f {} +

@@ -1,13 +1,9 @@
-"""The documentation does what it says: every command and every snippet runs, and its numbers are those of the results.
-
-`python tests/test_docs.py` writes the demo's numbers and the baselines' into README.md.
-"""
+"""The documentation does what it says: every command and every snippet runs, and what it names is there."""
 
 from __future__ import annotations
 
 import contextlib
 import csv
-import json
 import os
 import re
 import shlex
@@ -19,52 +15,14 @@ import time
 import tomllib
 import urllib.error
 import urllib.request
-from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pytest
+from documents import BLOCK, DOCUMENTS, PROJECT, README, Block, blocks_of, name_of
 
-PROJECT = Path(__file__).resolve().parent.parent
-README = PROJECT / "README.md"
-DOCUMENTS = [README, *sorted((PROJECT / "docs").glob("*.md"))]
-DEMO = PROJECT / "results" / "demo" / "demo.json"
-
-# A comment before a block says that it takes long; a first line "# name.ext" makes it a file that later blocks use.
-BLOCK = re.compile(r"^(<!-- slow -->\n)?```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-FILE = re.compile(r"# ([\w-]+\.\w+)\n")
-TABLE = re.compile(r"(?<=<!-- demo -->\n).*?(?=<!-- /demo -->)", re.DOTALL)
-BASELINES = PROJECT / "results" / "baselines" / "baselines.json"
-BASELINES_TABLE = re.compile(r"(?<=<!-- baselines -->\n).*?(?=<!-- /baselines -->)", re.DOTALL)
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)#]*)(?:#([^)]*))?\)")
 TIME_LIMIT = 900
 SERVES = "flexarm lab"
-
-
-@dataclass(frozen=True)
-class Block:
-    """A fenced block: its language, text and first line's number; whether it is slow; the file that it is, or ""."""
-
-    language: str
-    text: str
-    line: int
-    slow: bool
-    file: str
-
-
-def blocks_of(document: Path) -> list[Block]:
-    text = document.read_text(encoding="utf-8")
-    found = []
-    for match in BLOCK.finditer(text):
-        name = FILE.match(match[3])
-        line = text.count("\n", 0, match.start(3)) + 1
-        found.append(Block(match[2], match[3], line, bool(match[1]), name[1] if name else ""))
-    return found
-
-
-def name_of(document: Path) -> str:
-    return document.relative_to(PROJECT).as_posix()
 
 
 def has_slow(document: Path) -> bool:
@@ -269,66 +227,3 @@ def test_your_arm_names_every_verdict():
     named = set(re.findall(r"^\| `([a-z_]+)`", text, re.MULTILINE))
     source = Path(words.__file__).read_text(encoding="utf-8")
     assert named == set(re.findall(r'diagnosis\.verdict == "(\w+)"', source)) | {"effects"}
-
-
-# The demo's numbers
-
-
-def demo_table(results: Mapping[str, Any]) -> str:
-    """What README.md says of the demo, from the numbers in results/demo/demo.json."""
-    from flexarm_env.demo.story import HIDDEN
-    from flexarm_env.pictures.words import number
-
-    diagnosis, added = results["diagnose"], results["add"]
-    steps = {
-        "model as given": "nominal",
-        "constants refitted": "refitted",
-        f"`{added['effect']}` added, all refitted": "final",
-    }
-    rows = [f"| {name} | {number(added['error'][k])} | {number(added['free_run'][k])} |" for name, k in steps.items()]
-    effect, key, size, unit = HIDDEN
-    found = f"The verdict is `{diagnosis['verdict']}`: {', '.join(diagnosis['effects']) or 'none named'}."
-    hidden = f"Hidden was {effect}, {key} {size} {unit}"
-    if added["effect"] == effect:
-        value = added["parameters"][key]
-        low, high = (number(value[end], 4) for end in ("low", "high"))
-        hidden += f"; found {number(value['value'], 4)} {unit} (90 % interval {low} to {high})"
-    lines = [
-        "| held-out error over noise | windows of 1 s | one free run |",
-        "|---|---:|---:|",
-        *rows,
-        "",
-        f"{found} {hidden}.",
-        f"The diagnosis took {number(diagnosis['seconds'], 2)} s in two processes.",
-    ]
-    return "\n".join(lines) + "\n"
-
-
-def test_readme_has_the_numbers_of_the_demo():
-    assert DEMO.is_file(), "no results/demo/demo.json; `make demo` makes it"
-    (written,) = TABLE.findall(README.read_text(encoding="utf-8"))
-    wanted = demo_table(json.loads(DEMO.read_text(encoding="utf-8")))
-    assert written == wanted, "README.md has other numbers than results/demo/demo.json: python tests/test_docs.py"
-
-
-def baselines_table(result: Mapping[str, Any]) -> str:
-    """What README.md says of the baselines, from the numbers in results/baselines/baselines.json."""
-    from agents.report import summary_of
-
-    words = f"The slew over 100°, means over {result['arms']} arms of each set; an arm that never settles counts with 5 s:"
-    return f"{words}\n\n{summary_of(result)}"
-
-
-def test_readme_has_the_numbers_of_the_baselines():
-    assert BASELINES.is_file(), "no results/baselines/baselines.json; `make baselines` makes it"
-    (written,) = BASELINES_TABLE.findall(README.read_text(encoding="utf-8"))
-    wanted = baselines_table(json.loads(BASELINES.read_text(encoding="utf-8")))
-    assert written == wanted, "README.md has other numbers than results/baselines: python tests/test_docs.py"
-
-
-if __name__ == "__main__":
-    sys.path.insert(0, str(PROJECT))
-    table = demo_table(json.loads(DEMO.read_text(encoding="utf-8")))
-    written = TABLE.sub(lambda _: table, README.read_text(encoding="utf-8"))
-    baselines = baselines_table(json.loads(BASELINES.read_text(encoding="utf-8")))
-    README.write_text(BASELINES_TABLE.sub(lambda _: baselines, written), encoding="utf-8")
