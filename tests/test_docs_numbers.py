@@ -8,22 +8,23 @@ from __future__ import annotations
 import json
 import re
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pytest
 from documents import PROJECT, README
 
 RESULTS = PROJECT / "results"
+HIDDEN_EFFECTS = PROJECT / "docs" / "hidden-effects.md"
 
 
-def demo_table(results: Mapping[str, Any]) -> str:
+def demo_table(numbers: str) -> str:
     """What README.md says of the demo, from the numbers in results/demo/demo.json."""
     from flexarm_env.demo.story import HIDDEN
     from flexarm_env.pictures.words import number
 
+    results = json.loads(numbers)
     diagnosis, added = results["diagnose"], results["add"]
     steps = {
         "model as given": "nominal",
@@ -49,12 +50,18 @@ def demo_table(results: Mapping[str, Any]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def baselines_table(result: Mapping[str, Any]) -> str:
+def baselines_table(numbers: str) -> str:
     """What README.md says of the baselines, from the numbers in results/baselines/baselines.json."""
     from agents.report import summary_of
 
+    result = json.loads(numbers)
     words = f"The slew over 100°, means over {result['arms']} arms of each set; an arm that never settles counts with 5 s:"
     return f"{words}\n\n{summary_of(result)}"
+
+
+def hidden_effects_table(written: str) -> str:
+    """What docs/hidden-effects.md says of the benchmark: results/hidden_effects/diagnose-4/table.md without its title."""
+    return written.split("\n", 2)[2]
 
 
 @dataclass(frozen=True)
@@ -64,7 +71,7 @@ class Table:
     name: str
     document: Path
     numbers: Path
-    make: Callable[[Mapping[str, Any]], str]
+    make: Callable[[str], str]
 
     @property
     def place(self) -> re.Pattern[str]:
@@ -72,12 +79,13 @@ class Table:
 
     @property
     def text(self) -> str:
-        return self.make(json.loads(self.numbers.read_text(encoding="utf-8")))
+        return self.make(self.numbers.read_text(encoding="utf-8"))
 
 
 TABLES = (
     Table("demo", README, RESULTS / "demo" / "demo.json", demo_table),
     Table("baselines", README, RESULTS / "baselines" / "baselines.json", baselines_table),
+    Table("hidden-effects", HIDDEN_EFFECTS, RESULTS / "hidden_effects" / "diagnose-4" / "table.md", hidden_effects_table),
 )
 
 

@@ -43,7 +43,7 @@ def rescaled(coordinates: Sequence[Coordinate], x: Floats, powers: NDArray[np.in
 
 
 def best_scale(problem: Problem, x: Floats, powers: NDArray[np.int64]) -> tuple[Floats, float]:
-    """Return x on the scale where residual and priors are least, and the standard deviation of the scale's logarithm.
+    """Return x on the scale where residual and priors are least, and the cost's curvature along the scale's logarithm.
 
     Args:
         problem: whose priors and residual count.
@@ -60,7 +60,28 @@ def best_scale(problem: Problem, x: Floats, powers: NDArray[np.int64]) -> tuple[
     below, here, above = (cost(shift) for shift in (-STEP, 0.0, STEP))
     curvature = (below + above - 2.0 * here) / (2.0 * STEP**2)
     if not curvature > 0.0:
-        return x, float(np.sum((powers / problem.prior) ** 2) ** -0.5)
+        return x, 0.0
     shift = float(np.clip((below - above) / (4.0 * STEP * curvature), -FURTHEST, FURTHEST))
     best = rescaled(problem.coordinates, x, powers, shift) if cost(shift) < here else x
-    return best, float(curvature**-0.5)
+    return best, float(curvature)
+
+
+def scale_deviation(problem: Problem, x: Floats, powers: NDArray[np.int64]) -> float:
+    """Return the standard deviation of the scale's logarithm, from residual and priors.
+
+    The priors count as wide as the constants prove to be wrong (Birge, Phys. Rev. 40 (1932) 207): those of an arm whose ratios
+    were all right say more of their scale than those of one whose ratios were wrong by a third. One more constant, as far off as
+    its prior is wide, stands for what so few cannot show.
+
+    Args:
+        problem: whose priors and residual count.
+        x: where a fit ended (x,), on its best scale.
+        powers: see `force_powers`.
+    """
+    if not powers.any():
+        return 0.0
+    known = (powers != 0) & np.array([c.is_constant for c in problem.coordinates])
+    wrong = (np.sum((x[known] / problem.prior[known]) ** 2) + 1.0) / max(np.count_nonzero(known), 1)
+    of_priors = np.sum((powers / problem.prior) ** 2)
+    of_residual = max(best_scale(problem, x, powers)[1] - of_priors, 0.0)
+    return float((of_priors / wrong + of_residual) ** -0.5)

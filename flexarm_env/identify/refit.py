@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.common_scale import best_scale, force_powers
+from flexarm_env.identify.common_scale import force_powers, scale_deviation
 from flexarm_env.identify.coordinates import (
     Coordinate,
     base_coordinates,
@@ -22,7 +22,7 @@ from flexarm_env.identify.data import Data, everything, torque_scale
 from flexarm_env.identify.least_squares import Solution, covariance, jacobian, minimise
 from flexarm_env.identify.problem import Problem, rms_by_run, score
 from flexarm_env.identify.results import Estimate
-from flexarm_env.identify.settle import settled
+from flexarm_env.identify.settle import DIFFERENCE, settled
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float, str], None]
@@ -178,18 +178,28 @@ def with_all(found: Refit, nominal: Arm, data: Data) -> Refit:
     return Refit(arm, found.coordinates, solution, problem, moved)
 
 
-def at_solution(found: Refit) -> Refit:
-    """Return the refit with its Jacobian where it ended, weighted by what it left: what intervals are made of."""
-    problem = found.problem
-    x = found.solution.x
+def scatter(found: Refit, powers: NDArray[np.int64]) -> Floats:
+    """Return the variance of each x (x,) where a refit ended, weighted by what it left, but for the common scale of forces.
+
+    By differences as wide as the fit's and by exact ones, whichever is more: wide ones find motion where values that change
+    together leave none, exact ones miss what sticking hides.
+
+    Args:
+        found: the refit.
+        powers: how each x goes with forces (x,).
+    """
+    problem, x = found.problem, found.solution.x
     problem.sigma = rms_by_run(problem.errors_of(found.arm), problem.data)
-    residual = problem.residual(x)
-    solution = replace(
-        found.solution,
-        residual=residual,
-        jacobian=jacobian(problem.residual, x, found.solution.reach.now),
-    )
-    return replace(found, solution=solution)
+    prior = np.array([c.prior for c in found.coordinates])
+    block = max(int(BLOCK / problem.data.interval), 1) * len(problem.data.signals)
+    residual, onto_scale = problem.residual(x), powers / prior**2
+    rest = np.eye(len(x)) - np.outer(powers, onto_scale) / max(onto_scale @ powers, 1e-300)
+    variances = []
+    for steps in (found.solution.reach.now, np.full(len(x), DIFFERENCE)):
+        spread = covariance(jacobian(problem.residual, x, steps), residual, prior, block)
+        variances.append(np.diag(rest @ spread @ rest.T))
+    largest: Floats = np.maximum.reduce([*variances, np.zeros(len(x))])
+    return largest
 
 
 def estimates(found: Refit, nominal: Arm) -> list[Estimate]:
@@ -197,13 +207,9 @@ def estimates(found: Refit, nominal: Arm) -> list[Estimate]:
 
     Scatter of the fit (sandwich), how far the value moved when the held-out part came in, and what no model beats.
     """
-    found = at_solution(found)
-    prior = np.array([c.prior for c in found.coordinates])
-    block = max(int(BLOCK / found.problem.data.interval), 1) * len(found.problem.data.signals)
-    spread = covariance(found.solution.jacobian, found.solution.residual, prior, block)
-    variance = np.maximum(np.diag(spread), 0.0) + (0.0 if found.moved is None else found.moved**2)
     powers = force_powers(found.arm, found.coordinates)
-    _, common = best_scale(found.problem, found.solution.x, powers)
+    variance = scatter(found, powers) + (0.0 if found.moved is None else found.moved**2)
+    common = scale_deviation(found.problem, found.solution.x, powers)
     relative = np.hypot(BEST_MODEL, common * np.abs(powers))
     sizes = [
         abs(c.value(float(x))) / c.scale if c.scale else 1.0 for c, x in zip(found.coordinates, found.solution.x, strict=True)

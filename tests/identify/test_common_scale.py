@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from flexarm_env import Arm, simulate
-from flexarm_env.identify.common_scale import best_scale, force_power, force_powers, rescaled
+from flexarm_env.identify.common_scale import best_scale, force_power, force_powers, rescaled, scale_deviation
 from flexarm_env.identify.coordinates import place_values, position
 from flexarm_env.identify.data import prepare
 from flexarm_env.identify.least_squares import cost_of
@@ -49,17 +49,37 @@ def test_motion_is_the_same_on_every_scale():
 
 def test_priors_set_a_scale_that_nothing_else_does():
     problem, x, powers = problem_of()
-    found, spread = best_scale(problem, rescaled(problem.coordinates, x, powers, 0.2), powers)
+    found, curvature = best_scale(problem, rescaled(problem.coordinates, x, powers, 0.2), powers)
     # the priors' centres are the nominal arm's values, at x = 0
     np.testing.assert_allclose(found, x, atol=1e-4)
     priors = np.array([c.prior for c in problem.coordinates])
-    assert spread == pytest.approx(np.sum((powers / priors) ** 2) ** -0.5, rel=1e-3)
+    assert curvature == pytest.approx(np.sum((powers / priors) ** 2), rel=1e-3)
+
+
+@pytest.mark.parametrize("wrong", [0.3, 1.0, 2.0])
+def test_a_scale_is_as_uncertain_as_the_constants_prove_wrong(wrong):
+    problem, x, powers = problem_of()
+    draw, slope = np.random.default_rng(0), powers / problem.prior**2
+    off = []
+    for _ in range(100):
+        true = np.where(powers, wrong * problem.prior * draw.standard_normal(len(x)), x)
+        shift = -(slope @ true) / (slope @ powers)  # to the best scale, where all is as near to the nominal arm as can be
+        off.append(shift / scale_deviation(problem, rescaled(problem.coordinates, true, powers, shift), powers))
+    # where all proves nearly right, the constant that stands for what few cannot show keeps the deviation wide
+    assert 0.6 < np.sqrt(np.mean(np.square(off))) < 1.25
+
+
+def test_a_scale_that_all_constants_agree_on_is_known_the_better():
+    problem, x, powers = problem_of()
+    by_priors_alone = np.sum((powers / problem.prior) ** 2) ** -0.5
+    # torque constant, two inertias, gears, three of friction, two of the beam, two gages
+    assert scale_deviation(problem, x, powers) == pytest.approx(by_priors_alone / np.sqrt(11), rel=0.02)
 
 
 def test_a_known_payload_sets_the_scale():
     problem, x, powers = problem_of(payload=0.15)
-    found, spread = best_scale(problem, x, powers)
-    assert spread < 0.002
+    found, _ = best_scale(problem, x, powers)
+    assert scale_deviation(problem, x, powers) < 0.002
     assert np.abs(found - x).max() < 0.005
 
 
@@ -68,7 +88,7 @@ def test_a_known_torque_constant_leaves_no_scale():
     rest = [c for c in problem.coordinates if c.path != "drive.torque_constant"]
     powers = force_powers(problem.arm, rest)
     assert not powers.any()
-    assert best_scale(problem, x, powers)[1] == 0.0
+    assert scale_deviation(problem, x, powers) == 0.0
 
 
 def test_the_last_stretch_ends_where_the_normal_equations_say():
