@@ -16,7 +16,6 @@ import pytest
 from documents import PROJECT, README
 
 RESULTS = PROJECT / "results"
-HIDDEN_EFFECTS = PROJECT / "docs" / "hidden-effects.md"
 
 
 def demo_table(numbers: str) -> str:
@@ -59,11 +58,6 @@ def baselines_table(numbers: str) -> str:
     return f"{words}\n\n{summary_of(result)}"
 
 
-def hidden_effects_table(written: str) -> str:
-    """What docs/hidden-effects.md says of the benchmark: results/hidden_effects/diagnose-4/table.md without its title."""
-    return written.split("\n", 2)[2]
-
-
 @dataclass(frozen=True)
 class Table:
     """A table of a document: its name in the comments, the numbers it is made of, and how."""
@@ -85,7 +79,6 @@ class Table:
 TABLES = (
     Table("demo", README, RESULTS / "demo" / "demo.json", demo_table),
     Table("baselines", README, RESULTS / "baselines" / "baselines.json", baselines_table),
-    Table("hidden-effects", HIDDEN_EFFECTS, RESULTS / "hidden_effects" / "diagnose-4" / "table.md", hidden_effects_table),
 )
 
 

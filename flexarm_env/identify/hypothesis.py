@@ -24,11 +24,28 @@ def excess(value: float) -> float:
 
 @dataclass
 class Hypothesis:
-    """Effects tried together, the arm refitted with them, and its errors on the held-out part."""
+    """Effects tried together, the arm refitted with them, and its errors on the held-out part and on the fitted one."""
 
     effects: tuple[str, ...]
     refit: Refit
     score: Score
+    fitted: Score
+
+
+def judged(effects: tuple[str, ...], found: Refit, data: Data) -> Hypothesis:
+    """Return the hypothesis that a refitted arm is."""
+    return Hypothesis(effects, found, score(found.arm, data), score(found.arm, data, held_out=False))
+
+
+def criterion(hypothesis: Hypothesis, data: Data) -> float:
+    """Return the Bayesian information criterion of a hypothesis near the noise, on all of the data (Schwarz, Ann. Stat. 6, 461).
+
+    The held-out part alone tells whether an effect is missing; which of two rivals it is, more samples tell better.
+    """
+    fitted = sum(int(run.train.sum()) for run in data.runs) * len(data.signals)
+    held = sum(len(run.train) for run in data.runs) * len(data.signals) - fitted
+    errors = fitted * hypothesis.fitted.windows**2 + held * hypothesis.score.windows**2
+    return errors + len(hypothesis.refit.coordinates) * math.log(fitted + held)
 
 
 def in_windows(score: Score) -> float:
@@ -59,7 +76,7 @@ def fit_hypothesis(effects: tuple[str, ...], arm: Arm, nominal: Arm, data: Data,
     found = refit(arm, nominal, data)
     if thorough:
         found = or_from_nominal(found, nominal, data)
-    return Hypothesis(effects, found, score(found.arm, data))
+    return judged(effects, found, data)
 
 
 def asks_for_offset(found: Refit, data: Data) -> float:

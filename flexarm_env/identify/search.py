@@ -14,16 +14,18 @@ from flexarm_env.identify.hypothesis import (
     Hypothesis,
     asks_for_offset,
     at_bound,
+    criterion,
     excess,
     fit_briefly,
     fit_hypothesis,
     in_windows,
+    judged,
     measure_of,
     try_effect,
 )
 from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.problem import Score, score
-from flexarm_env.identify.refit import FAR_OFF, Progress, Refit, as_it_is, polish, put_back, refit, with_effects_of
+from flexarm_env.identify.refit import FAR_OFF, NEAR, Progress, Refit, as_it_is, polish, put_back, refit, with_effects_of
 from flexarm_env.identify.screen import Trial, attempt, best_trials, candidates, first_start, screening_bases
 
 #: How many candidates are refitted in full in each round.
@@ -187,12 +189,17 @@ class Search:
             return first
         arms = [with_effects_of(h.refit.arm, self.nominal) for h in first]
         again = self._refit_all([h.effects for h in first], arms, 0.7, 0.05)
-        better = [min(pair, key=lambda h: measure(h.score)) for pair in zip(first, again, strict=True)]
-        better.sort(key=lambda h: measure(h.score))
+        order = self._order(winner.score, measure)
+        better = [min(pair, key=order) for pair in zip(first, again, strict=True)]
         for hypothesis in better if len(winner.effects) == 1 else []:
             self._remember(hypothesis.effects[0], 1.0 - measure(hypothesis.score) / measure(self.best), hypothesis.refit)
-        left = measure(better[0].score)
-        return [h for h in better if measure(h.score) <= left + min(SAME_GAIN * removed, max(left, SAME_EXCESS))]
+        left = min(measure(h.score) for h in better)
+        same = [h for h in better if measure(h.score) <= left + min(SAME_GAIN * removed, max(left, SAME_EXCESS))]
+        return sorted(same, key=order)
+
+    def _order(self, best: Score, measure: Callable[[Score], float]) -> Callable[[Hypothesis], float]:
+        """Return what rivals are ordered by: all of the data where the best comes near the noise, else what was held out."""
+        return (lambda h: criterion(h, self.data)) if best.windows < NEAR[1] else (lambda h: measure(h.score))
 
     def _measure_of(self, scores: Sequence[Score]) -> Callable[[Score], float]:
         """Return the excess error by which hypotheses are judged; where torque noise is stated, no whole run says anything."""
@@ -312,9 +319,11 @@ class Search:
         found = [h for h in found if not at_bound(h)]
         measure = self._measure_of([self.best, *(h.score for h in found)])
         level = measure(self.best) + SAME_GAIN * (measure(self.first) - measure(self.best))
-        best = min(found, key=lambda h: measure(h.score), default=None)
+        order = self._order(self.best, measure)
+        best = min(found, key=order, default=None)
         same = [h.effects[0] for h in found if measure(h.score) <= level]
-        if best is None or measure(best.score) >= (1.0 - LEAST_GAIN) * measure(self.best):
+        least = LEAST_GAIN if self.best.windows >= NEAR[1] else 0.0
+        if best is None or order(best) >= (1.0 - least) * order(judged((OFFSET,), self.found, self.data)):
             self.equivalent[place] += same
             return
         name = best.effects[0]

@@ -97,6 +97,20 @@ def test_practice(measurements, case):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(("setting", "effect"), [("asym", "asymmetric_coulomb"), ("bias", "constant_torque")])
+def test_effects_that_differ_only_at_rest_are_told_apart(setting, effect):
+    recordings = []
+    for name in ("pulse", "square"):
+        made = rig.simulate({setting: 0.01}, name, seed=7)
+        signals = {signal: made[signal] for signal in ("arm_angle", "motor_speed", "strain_mid", "strain_base")}
+        recordings.append(Recording.from_arrays(name, made["time"], "current", made["current"], signals))
+    found = diagnose(Arm.load("thesis-fem"), recordings)
+    assert found.effects == [effect]
+    assert "asymmetric_coulomb" in found.equivalent[0]
+    assert "constant_torque" in found.equivalent[0]
+
+
+@pytest.mark.slow
 def test_wrong_constants_are_told_from_effects(measurements):
     recordings, truth = practice(measurements, "p02")
     found = diagnose(Arm.load("thesis-fem"), recordings)

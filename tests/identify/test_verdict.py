@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from flexarm_env import Arm
 from flexarm_env.identify.diagnose import _verdict
+from flexarm_env.identify.hypothesis import criterion
 from flexarm_env.identify.problem import Score
 
 
@@ -46,3 +48,18 @@ def test_a_weak_effect_is_named_though_a_whole_run_gains_nothing():
 def test_constants_are_blamed_where_nothing_else_is_left():
     assert verdict(BEFORE, Score(1.0, 1.0), Score(1.0, 1.0), []) == "parameters"
     assert verdict(Score(1.0, 1.0), Score(1.0, 1.0), Score(1.0, 1.0), []) == "nothing_missing"
+
+
+def rival(fitted: float, held: float, parameters: int = 10) -> float:
+    """Its criterion on 2600 fitted and 1400 held-out samples of one signal."""
+    runs = [SimpleNamespace(train=np.arange(2000) < 1300)] * 2
+    own = SimpleNamespace(coordinates=[None] * parameters)
+    hypothesis = SimpleNamespace(refit=own, fitted=Score(fitted, fitted), score=Score(held, held))
+    return criterion(hypothesis, SimpleNamespace(runs=runs, signals=["arm_angle"]))
+
+
+def test_all_of_the_data_decide_between_rivals():
+    assert rival(1.0, 1.02) == pytest.approx(2600.0 + 1400.0 * 1.02**2 + 10 * np.log(4000.0))
+    assert rival(1.0, 1.02) < rival(1.02, 1.0)  # more samples were fitted than held out
+    assert rival(1.0, 1.0) < rival(1.0, 1.0, parameters=11)
+    assert rival(1.0, 1.0, parameters=11) < rival(1.01, 1.0)
