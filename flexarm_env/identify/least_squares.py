@@ -162,4 +162,4 @@ def covariance(j: Floats, residual: Floats, prior: Floats, block: int) -> Floats
     sums = rows.reshape(count, block, -1).sum(axis=1)
     meat = sums.T @ sums + np.diag(prior**-2.0)
     spread: Floats = bread @ meat @ bread
-    return np.maximum(spread, 0.0) if spread.ndim == 1 else spread
+    return spread

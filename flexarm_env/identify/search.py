@@ -323,7 +323,7 @@ class Search:
         best = min(found, key=order, default=None)
         same = [h.effects[0] for h in found if measure(h.score) <= level]
         least = LEAST_GAIN if self.best.windows >= NEAR[1] else 0.0
-        if best is None or order(best) >= (1.0 - least) * order(judged((OFFSET,), self.found, self.data)):
+        if best is None or order(best) >= (1.0 - least) * order(judged(tuple(self.accepted), self.found, self.data)):
             self.equivalent[place] += same
             return
         name = best.effects[0]
