@@ -8,7 +8,7 @@ from controllers.loop import INTERVAL, close
 
 from flexarm_env.controllers import make_controller
 
-#: Just above break-away: 0.35 Nm over 0.495 Nm/A are 0.71 A.
+#: Just above break-away: 0.358 Nm over 0.495 Nm/A are 0.723 A.
 COMMAND = 0.73
 
 
