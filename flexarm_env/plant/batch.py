@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from numba import njit
 
-from flexarm_env.plant.kernel import control_step, is_lost, let_through, measure
+from flexarm_env.plant.control_step import control_step, let_through
 from flexarm_env.plant.layout import (
     BLOCKS,
     BODIES,
@@ -19,6 +19,8 @@ from flexarm_env.plant.layout import (
     Places,
 )
 from flexarm_env.plant.propagate import inlined_dot
+from flexarm_env.plant.readings import measure
+from flexarm_env.plant.replay import is_lost
 from flexarm_env.plant.stick_slip import is_stuck, record
 
 #: Columns of the truth after the readings: hub angle and speed, tip deflection, whether the hub sticks, whether all is lost.

@@ -80,10 +80,15 @@ FILES = (
     "crossing.py",
     "stick_slip.py",
     "varying.py",
+    "slide_table.py",
+    "slide_force.py",
     "slide.py",
     "glide.py",
     "events.py",
-    "kernel.py",
+    "substep.py",
+    "control_step.py",
+    "readings.py",
+    "replay.py",
     "batch.py",
 )
 

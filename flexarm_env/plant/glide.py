@@ -54,7 +54,7 @@ from flexarm_env.plant.layout import (
     Places,
 )
 from flexarm_env.plant.propagate import RESPONSE, respond
-from flexarm_env.plant.slide import DEPTH, prepare_slide, slide_table, slides
+from flexarm_env.plant.slide_table import DEPTH, prepare_slide, slide_table, slides
 from flexarm_env.plant.stick_slip import effect_torque, friction_budget, is_stuck, record, rubs
 from flexarm_env.plant.varying import reach
 

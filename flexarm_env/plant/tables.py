@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.beam import Matrix, spread_out, turned
 from flexarm_env.plant.modal import Mode, complete, mode_of
-from flexarm_env.plant.slide import DEPTH, table_size
+from flexarm_env.plant.slide_table import DEPTH, table_size
 from flexarm_env.plant.structure import DRIVERS, HUB_TORQUE, MOTOR_TORQUE, LinearModel, Structure, exceeds
 
 RESPONSE = 5

@@ -1,0 +1,115 @@
+"""One control step of the arm: the delay, then the new command, in glides, slides and substeps."""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from flexarm_env.plant.glide import glide
+from flexarm_env.plant.laws import drive_law
+from flexarm_env.plant.layout import (
+    BODIES,
+    COMMAND,
+    DRIVE_LAWS,
+    EARLY_LENGTH,
+    EARLY_SUBSTEPS,
+    GLIDES,
+    INTERVAL,
+    LATE_LENGTH,
+    LATE_SUBSTEPS,
+    MODE,
+    POINTS,
+    TORQUE_LAWS,
+    VARYING,
+    Numbers,
+    Places,
+)
+from flexarm_env.plant.slide import slide
+from flexarm_env.plant.slide_table import DEPTH, prepare_slide, slide_table, table_size
+from flexarm_env.plant.substep import UNTABULATED, substep, substep_scratch
+
+
+@njit
+def scratch_size(n: Places) -> int:
+    """How many numbers of scratch the kernel needs."""
+    return substep_scratch(n) + (table_size(n) if n[VARYING] else 0)
+
+
+@njit(forceinline=True)
+def let_through(d: Numbers, n: Places, s: Numbers, command: float) -> float:
+    """Return what the drive makes of a command, and remember it."""
+    place = n[DRIVE_LAWS]
+    for j in range(n[place]):
+        command = drive_law(n[place + 1 + 2 * j], command, s[COMMAND], d[INTERVAL], d, n[place + 2 + 2 * j])
+    s[COMMAND] = command
+    return command
+
+
+@njit
+def rests(n: Places, mode: int) -> bool:
+    """Whether the hub of an arm of one body is held and no force varies for that."""
+    return n[BODIES] == 1 and mode == 1 and n[n[TORQUE_LAWS]] == 0
+
+
+@njit
+def walk(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int, w: Numbers) -> None:
+    """Move the arm on by t [s] in slides, halved where the force varies fast or an event may fall in, else substeps."""
+    whole, done, level = 1 << DEPTH, 0, 0
+    own, own_mode, own_level = substep_scratch(n), UNTABULATED, 0
+    while done < whole:
+        mode, part = int(s[MODE]), whole >> level
+        length = t * 0.5**level
+        if slot >= 0 and level == 0 and rests(n, mode):
+            moved = glide(d, n, s, command, length, slot, w)
+        elif slot >= 0:
+            moved = slide(d, n, s, command, length, level == DEPTH, d, slide_table(n, mode, slot, level), w)
+        else:
+            if own_mode != mode or own_level != level:
+                prepare_slide(d, n, mode, length, w, own)
+                own_mode, own_level = mode, level
+            moved = slide(d, n, s, command, length, level == DEPTH, w, own, w)
+        if not moved and level < DEPTH:
+            level += 1
+            continue
+        if not moved:
+            substep(d, n, s, command, length, UNTABULATED, w)
+        done += part
+        if level > 0 and done % (2 * part) == 0:
+            level -= 1
+
+
+@njit(forceinline=True)
+def move(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int, w: Numbers) -> None:
+    """Move the arm on by t [s] under a held command; `slot` names the tables for exactly t."""
+    if n[VARYING] and not n[POINTS]:
+        walk(d, n, s, command, t, slot, w)
+        return
+    if n[GLIDES] == 2 and slot >= 0 and slide(d, n, s, command, t, True, d, slide_table(n, int(s[MODE]), slot, 0), w):
+        return
+    substep(d, n, s, command, t, slot, w)
+
+
+@njit
+def control_step(d: Numbers, n: Places, s: Numbers, before: float, command: float, w: Numbers) -> None:
+    """Move the arm on by one sample: the last command acts until the delay is over, then the new one."""
+    for _ in range(n[EARLY_SUBSTEPS]):
+        if n[GLIDES] != 1 or not glide(d, n, s, before, d[EARLY_LENGTH], 0, w):
+            move(d, n, s, before, d[EARLY_LENGTH], 0, w)
+    for _ in range(n[LATE_SUBSTEPS]):
+        if n[GLIDES] != 1 or not glide(d, n, s, command, d[LATE_LENGTH], 1, w):
+            move(d, n, s, command, d[LATE_LENGTH], 1, w)
+
+
+@njit(inline="always")
+def uneven_step(
+    d: Numbers, n: Places, s: Numbers, before: float, command: float, interval: float, w: Numbers,
+) -> None:  # fmt: skip
+    """Like control_step, over an interval that is not the tabulated one."""
+    early = min(d[EARLY_LENGTH] * n[EARLY_SUBSTEPS], interval)
+    late = interval - early
+    if early > 0.0:
+        move(d, n, s, before, early, UNTABULATED, w)
+    count = max(math.ceil(late / d[LATE_LENGTH] - 1e-9), 1) if late > 0.0 else 0
+    for _ in range(count):
+        move(d, n, s, command, late / count, UNTABULATED, w)

@@ -1,0 +1,191 @@
+"""What a step without events takes that does not change from step to step: how blocks answer, how each quantity moves.
+
+Laws ask for few quantities, so that their sweeps are few sums: tables say how each quantity moves without the change of
+force, and by each of that change's coefficients.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from flexarm_env.plant.crossing import stray
+from flexarm_env.plant.layout import (
+    ANGLE,
+    BLOCKS,
+    BODIES,
+    C0,
+    C1,
+    DRIVERS,
+    FORCE_COLUMNS,
+    FORCING,
+    HOLD,
+    HOLD_WEIGHT,
+    MESH,
+    MESH_WEIGHT,
+    POINTS,
+    REACH,
+    SPEED,
+    SPEED_WEIGHT,
+    VARYING,
+    W_HUB,
+    Numbers,
+    Places,
+)
+from flexarm_env.plant.propagate import INVERSE_FACTORIALS, LONG_REACH
+from flexarm_env.plant.stick_slip import is_stuck, record
+
+#: Lobatto's nodes after the start; the change of force over a step is a polynomial of this order.
+NODES = np.array([0.5 - math.sqrt(3.0 / 28.0), 0.5, 0.5 + math.sqrt(3.0 / 28.0), 1.0])
+ORDER = 4
+#: A step is halved so often at most.
+DEPTH = 3
+#: Terms of the series of a short time; numbers of a block in a table: C, S, R₀, stray.
+TERMS = 12
+PER_BLOCK = 4
+
+
+@njit
+def long_response(c0: float, c1: float, t: float, r: Numbers, at: int) -> None:
+    """Write C, S, R₀ to R₄ of one block after time t [s] to r: as block_response does, for higher orders."""
+    doublings = 0
+    while abs(c0) * t * t + abs(c1) * t > LONG_REACH:
+        t *= 0.5
+        doublings += 1
+    d0, d1 = c0 * t * t, c1 * t
+    older, old, r3, r4 = 0.0, 1.0, INVERSE_FACTORIALS[5], INVERSE_FACTORIALS[6]
+    for k in range(6, 5 + TERMS):
+        older, old = old, -(d1 * old + d0 * older)
+        r3 += old * INVERSE_FACTORIALS[k]
+        r4 += old * INVERSE_FACTORIALS[k + 1]
+    r2 = INVERSE_FACTORIALS[4] - d1 * r3 - d0 * r4
+    r1 = INVERSE_FACTORIALS[3] - d1 * r2 - d0 * r3
+    r0 = 0.5 - d1 * r1 - d0 * r2
+    c, s = 1.0 - d0 * r0, t * (1.0 - d1 * r0 - d0 * r1)
+    r0, r1, r2, r3, r4 = r0 * t**2, r1 * t**3, r2 * t**4, r3 * t**5, r4 * t**6
+    for _ in range(doublings):
+        r4 += c * r4 + s * r3 + t * (r3 + t / 2.0 * (r2 + t / 3.0 * (r1 + t / 4.0 * r0)))
+        r3 += c * r3 + s * r2 + t * (r2 + t / 2.0 * (r1 + t / 3.0 * r0))
+        r2 += c * r2 + s * r1 + t * (r1 + t / 2.0 * r0)
+        r1 += c * r1 + s * r0 + t * r0
+        r0 += c * r0 + s * s
+        c, s = c * c - c0 * s * s, s * (2.0 * c - c1 * s)
+        t *= 2.0
+    r[at], r[at + 1], r[at + 2], r[at + 3], r[at + 4], r[at + 5], r[at + 6] = c, s, r0, r1, r2, r3, r4
+
+
+@njit
+def table_size(n: Places) -> int:
+    """How many numbers the table of a step takes (see prepare_slide)."""
+    blocks, bodies = n[BLOCKS], n[BODIES]
+    size = PER_BLOCK * blocks + (bodies + 1) * bodies + 7
+    if n[VARYING]:
+        nodes = ORDER * 2 * bodies  # of each quantity
+        size += nodes * (2 * blocks + n[DRIVERS] + ORDER * bodies) + 2 * ORDER * bodies * blocks
+    return size
+
+
+@njit
+def slides(n: Places) -> bool:
+    """Whether the arm has tables for slide: where a glide would not do, and no drag varies along the beam."""
+    return n[POINTS] == 0 and (n[VARYING] > 0 or n[BODIES] == 2)
+
+
+@njit
+def slide_table(n: Places, mode: int, slot: int, level: int) -> int:
+    """Where the table of a substep stands, halved so often (see glide.prepare)."""
+    return record(n, mode) + n[REACH] + (slot * (DEPTH + 1 if n[VARYING] else 1) + level) * table_size(n)
+
+
+@njit
+def tested_row(n: Places, mode: int, row: int) -> tuple[int, int]:
+    """Return the places of the row that tells of a body's event, or (last) of the gears', and of its weights."""
+    here, blocks = record(n, mode), n[BLOCKS]
+    if row == n[BODIES]:
+        return here + n[MESH], here + n[MESH_WEIGHT]
+    if is_stuck(mode, row):
+        return here + n[HOLD] + row * 2 * blocks, here + n[HOLD_WEIGHT] + row * blocks
+    return here + n[SPEED] + row * 2 * blocks, here + n[SPEED_WEIGHT] + row * blocks
+
+
+@njit
+def bend_by_force(d: Numbers, n: Places, mode: int, row: int, body: int, length: float) -> float:
+    """How far a tested row strays from its chord, per variation of the force on a body."""
+    here, blocks = record(n, mode), n[BLOCKS]
+    place, weight = tested_row(n, mode, row)
+    column = here + n[FORCE_COLUMNS] + body * 2 * blocks
+    total = 0.0
+    for k in range(blocks):
+        a, b = d[here + n[C0] + k], d[here + n[C1] + k]
+        f, g = abs(d[column + 2 * k]), abs(d[column + 2 * k + 1])
+        growth = math.exp(max(-b, 0.0) * length)
+        total += d[weight + k] * 0.125 * length * length * growth * (math.sqrt(a) * f + g)
+        total += 0.125 * length * (abs(d[place + 2 * k]) * f + abs(d[place + 2 * k + 1]) * g)
+    return total
+
+
+@njit
+def prepare_slide(d: Numbers, n: Places, mode: int, length: float, to: Numbers, at: int) -> None:
+    """Write the table of a step of some length: per block C, S, R₀, stray; per tested row and body the bend by force.
+
+    If forces vary, for each node and quantity (angles, then speeds): its row on z at the start, what each driver adds,
+    what each coefficient of the force's change adds; then, by block, what these add to z in the end.
+    """
+    here, blocks, bodies, drivers = record(n, mode), n[BLOCKS], n[BODIES], n[DRIVERS]
+    size, quantities = 2 * blocks, 2 * bodies
+    bends = at + PER_BLOCK * blocks
+    for row in range(bodies + 1):
+        for body in range(bodies):
+            to[bends + row * bodies + body] = bend_by_force(d, n, mode, row, body, length)
+    response = bends + (bodies + 1) * bodies
+    rows = response + 7
+    drives = rows + ORDER * quantities * size
+    shifts = drives + ORDER * quantities * drivers
+    ends = shifts + ORDER * quantities * ORDER * bodies
+    if n[VARYING]:
+        for i in range(drives, ends):
+            to[i] = 0.0
+    for k in range(blocks):
+        c0, c1 = d[here + n[C0] + k], d[here + n[C1] + k]
+        forcing = here + n[FORCING] + 2 * k * drivers
+        for node in range(0 if n[VARYING] else ORDER - 1, ORDER):
+            long_response(c0, c1, NODES[node] * length, to, response)
+            c, s = to[response], to[response + 1]
+            for q in range(quantities if n[VARYING] else 0):
+                place = n[ANGLE] + q * size if q < bodies else n[SPEED] + (q - bodies) * size
+                place += here + 2 * k
+                u, v = d[place], d[place + 1]
+                if u == 0.0 and v == 0.0:
+                    to[rows + (node * quantities + q) * size + 2 * k] = 0.0
+                    to[rows + (node * quantities + q) * size + 2 * k + 1] = 0.0
+                    continue
+                to[rows + (node * quantities + q) * size + 2 * k] = u * c - v * c0 * s
+                to[rows + (node * quantities + q) * size + 2 * k + 1] = u * s + v * (c - c1 * s)
+                faster, slower = s, to[response + 2]
+                by_first, by_second = u * (faster + c1 * slower) - v * c0 * slower, u * slower + v * faster
+                for j in range(drivers):
+                    f, g = d[forcing + j], d[forcing + drivers + j]
+                    to[drives + (node * quantities + q) * drivers + j] += by_first * f + by_second * g
+                scale = 1.0
+                for order in range(ORDER):
+                    scale *= (order + 1) / length
+                    faster, slower = to[response + 2 + order], to[response + 3 + order]
+                    by_first, by_second = u * (faster + c1 * slower) - v * c0 * slower, u * slower + v * faster
+                    for body in range(bodies):
+                        f, g = d[forcing + W_HUB + body], d[forcing + drivers + W_HUB + body]
+                        i = shifts + ((node * quantities + q) * bodies + body) * ORDER + order
+                        to[i] += scale * (by_first * f + by_second * g)
+        i = at + PER_BLOCK * k
+        to[i], to[i + 1], to[i + 2] = to[response], to[response + 1], to[response + 2]
+        to[i + 3] = stray(c0, c1, length)
+        for body in range(bodies if n[VARYING] else 0):
+            f, g = d[forcing + W_HUB + body], d[forcing + drivers + W_HUB + body]
+            scale = 1.0
+            for order in range(ORDER):
+                scale *= (order + 1) / length
+                faster, slower = to[response + 2 + order], to[response + 3 + order]
+                i = ends + 2 * ((k * bodies + body) * ORDER + order)
+                to[i] = scale * (f * (faster + c1 * slower) + g * slower)
+                to[i + 1] = scale * (g * faster - c0 * slower * f)
