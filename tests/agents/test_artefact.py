@@ -1,0 +1,84 @@
+"""Policies as files."""
+
+from __future__ import annotations
+
+import pickle
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("stable_baselines3")
+from safetensors.torch import load_file, save_file
+from small_plans import silent, small
+
+from agents.learning.artefact import Artefact
+from agents.learning.options import ALGORITHMS
+from agents.learning.run import train
+from agents.measures import measure
+from agents.rollout import roll_out
+from agents.sets import SETS
+from flexarm_env import Arm, InputError
+from flexarm_env.tasks import TASKS
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+def test_an_artefact_reloads_to_the_same_scores(algorithm: str, tmp_path: Path) -> None:
+    made = train(small(algorithm=algorithm), 1, None, silent)
+    made.save(tmp_path / "a-1.safetensors")
+    loaded = Artefact.load(tmp_path / "a-1.safetensors")
+    assert loaded.plan == made.plan
+    assert loaded.run == made.run
+    arm = Arm.load("thesis")
+    scores = [
+        measure(roll_out(which.agent(), TASKS["slew"], arm, SETS["randomised"], 2), TASKS["slew"]) for which in (made, loaded)
+    ]
+    for name in scores[0]:
+        assert np.array_equal(scores[0][name], scores[1][name])
+
+
+def test_one_arm_is_driven_as_among_many() -> None:
+    agent = train(small(), 1, None, silent).agent()
+    seen = np.array([0.1, 0.2, 0.0, 0.1, 1.7])
+    agent.reset()
+    alone = agent.action(seen)
+    agent.reset(1)
+    assert alone.shape == (1,)
+    assert np.array_equal(agent.action(seen[None])[0], alone)
+
+
+@pytest.mark.parametrize("algorithm", ["ppo", "sac"])
+def test_a_policy_with_pulses_is_trained_and_reloads(tmp_path: Path, algorithm: str) -> None:
+    interface = {"base": "pd", "pulse": 0.3, "repeat": 100}
+    made = train(small(algorithm=algorithm, interface=interface, network={"layers": [8], "spread": "own"}), 0, None, silent)
+    made.save(tmp_path / "pulses-0.safetensors")
+    agent, reading = Artefact.load(tmp_path / "pulses-0.safetensors").agent(), np.zeros((3, 5))
+    agent.reset(3)
+    assert agent.action(reading).shape == (3, 1)
+    assert agent.held.shape == (3, 2)
+
+
+def test_loading_runs_no_code(tmp_path: Path) -> None:
+    class Harm:
+        def __reduce__(self) -> tuple:
+            return (Path.touch, (tmp_path / "harmed",))
+
+    (tmp_path / "bad-0.safetensors").write_bytes(pickle.dumps(Harm()))
+    (tmp_path / "bad-0.checkpoint").write_bytes(pickle.dumps({"run": Harm()}))
+    with pytest.raises(InputError, match="no policy"):
+        Artefact.load(tmp_path / "bad-0.safetensors")
+    with pytest.raises(InputError, match="no checkpoint"):
+        train(small(), 0, tmp_path / "bad-0.checkpoint", silent)
+    assert not (tmp_path / "harmed").exists()
+
+
+def test_weights_that_do_not_fit_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a-0.safetensors"
+    made = train(small(), 0, None, silent)
+    replace(made, plan=replace(made.plan, network=replace(made.plan.network, layers=(9,)))).save(path)
+    with pytest.raises(InputError, match="do not fit"):
+        Artefact.load(path).agent()
+    save_file(load_file(path), path)
+    with pytest.raises(InputError, match="holds no policy"):
+        Artefact.load(path)
