@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from flexarm_env.arm import Arm, short_name
+from flexarm_env.identify.acceptance import LEAST_REMOVED, LEAST_TOTAL_GAIN, PERFECT
 from flexarm_env.identify.data import Data, prepare
 from flexarm_env.identify.hiding import could_hide
 from flexarm_env.identify.hypothesis import excess
@@ -18,7 +19,7 @@ from flexarm_env.identify.problem import Score, score
 from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.refit import Progress, best_refit, estimates, with_all
 from flexarm_env.identify.results import Candidate, Diagnosis
-from flexarm_env.identify.search import LEAST_REMOVED, LEAST_TOTAL_GAIN, PERFECT, Search
+from flexarm_env.identify.search import Search
 
 #: A model whose held-out errors in windows and freely replayed end below these is whole, whatever share was removed.
 WHOLE, WHOLE_FREE_RUN = 1.2, 1.5

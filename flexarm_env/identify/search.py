@@ -5,47 +5,31 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from joblib import Parallel, delayed
 
 from flexarm_env.arm import Arm
+from flexarm_env.identify.acceptance import LEAST_GAIN, Acceptance, is_lost, stays_lost
 from flexarm_env.identify.data import Data
+from flexarm_env.identify.fits import Fits
 from flexarm_env.identify.hypothesis import (
     OFFSET,
     Hypothesis,
-    asks_for_offset,
     at_bound,
     criterion,
     excess,
-    fit_briefly,
-    fit_hypothesis,
     in_windows,
     judged,
-    measure_of,
-    try_effect,
 )
 from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.problem import Score, score
-from flexarm_env.identify.refit import FAR_OFF, NEAR, Progress, Refit, as_it_is, polish, put_back, refit, with_effects_of
-from flexarm_env.identify.screen import Trial, attempt, best_trials, candidates, first_start, screening_bases
+from flexarm_env.identify.refit import FAR_OFF, NEAR, Progress, Refit, as_it_is, polish, refit, with_effects_of
+from flexarm_env.identify.screen import Trial, candidates
 
-#: How many candidates are refitted in full in each round.
+#: How many candidates are refitted in full in each round, and only those that lower the cost of the screening to the first
+#: share, by no less than the second of what the best does.
 FINALISTS = 4
-#: Constants that strayed by more standard deviations than this are put back before every effect is fitted briefly with all
-#: constants. One that leaves more than this share of what no effect would leave is dropped.
-BENT, BRIEFLY_BETTER = 1.0, 0.9
-#: And only those that lower the cost of the screening to the first share, by no less than the second of what the best does.
 LEAST_CHANGE, LEAST_OF_BEST = 0.97, 0.3
 #: Those that do this share of what the best does are refitted first, the others only if none of them is enough.
 NEAR_BEST = 0.6
-#: A held-out error below this leaves nothing to explain.
-PERFECT = 1.1
-#: Least share of the excess error that an effect must remove to be accepted; where a model is far off; and all accepted ones.
-LEAST_GAIN, LEAST_GAIN_FAR_OFF, LEAST_TOTAL_GAIN = 0.25, 0.5, 0.7
-#: Excess error, as a variance over the noise's, that an effect must remove at least, and as a share of that of the refitted
-#: constants: what is left of a large error comes from fits that end early, too.
-LEAST_REMOVED, LEAST_OF_FIRST = 0.2, 1e-3
-#: Share of the residual that a constant torque's signature must explain beside an effect for the two to be fitted together.
-LEAST_OFFSET = 0.01
 MOST_EFFECTS = 3
 #: Two effects are equivalent if the excess error that they leave differs by less than the first share of what they remove, and
 #: by less than one of them leaves, or the second, whichever is more.
@@ -59,7 +43,8 @@ class Search:
     """Forward search: add the best effect, refit, and again, until nothing is left or nothing helps."""
 
     def __init__(self, nominal: Arm, data: Data, jobs: int, say: Progress) -> None:
-        self.nominal, self.data, self.jobs, self.say = nominal, data, jobs, say
+        self.nominal, self.data, self.jobs = nominal, data, jobs
+        self.fits = Fits(nominal, data, jobs, say)
         self.noisy = nominal.constants["drive"]["torque_noise"] > 0.0
         self.accepted: list[str] = []
         self.equivalent: list[list[str]] = []
@@ -69,6 +54,7 @@ class Search:
     def run(self, base: Refit, before: Score, first: Score) -> None:
         """Search from the refitted constants, given the errors before and after the refit."""
         self.base, self.before, self.first = base, before, first
+        self.rules = Acceptance(first, self.noisy)
         self.found, self.best = base, first
         done = 0.1
         while len(self.accepted) < MOST_EFFECTS and self._add_one(done, 0.3):
@@ -88,34 +74,27 @@ class Search:
         return {"": self.found.arm}
 
     def _add_one(self, done: float, share: float) -> bool:
-        enough = self._is_enough(self.best)
+        enough = self.rules.is_enough(self.best)
         if enough and self.ranking:
             return False
-        trials = self._screen(done, 0.6 * share)
+        trials = self.fits.screen(self._starts(), done, 0.6 * share)
         if not self.ranking:
             self._rank_screened(trials)
         if enough:
             return False
-        control = next(t for t in trials if not t.effect)
-        lowest = min(t.cost for t in trials)
-        level = min(LEAST_CHANGE * control.cost, control.cost - LEAST_OF_BEST * (control.cost - lowest))
-        near = control.cost - NEAR_BEST * (control.cost - lowest)
-        better = [t for t in trials if t.effect and t.cost < level][:FINALISTS]
-        found: list[Hypothesis] = []
-        for part in ([t for t in better if t.cost <= near], [t for t in better if t.cost > near]):
-            if not any(self._is_enough(h.score) for h in found):
-                found += self._refit_all([(t.effect,) for t in part], [t.arm for t in part], done + 0.5 * share, 0.1 * share)
+        found = self._refit_best(trials, done + 0.5 * share, 0.1 * share)
         best = min((h.score.windows for h in found), default=np.inf)
-        lost = best > FAR_OFF or excess(best) > (1.0 - LEAST_TOTAL_GAIN) * excess(self.best.windows)
-        if lost and not self.accepted:  # a second effect's fits take minutes, with the first in the arm
-            found += self._try_all(trials, [h.effects[0] for h in found], done + 0.6 * share, 0.2 * share)
-        if found and not any(self._is_enough(h.score) for h in found):
-            found += self._with_offset(found, done + 0.8 * share, 0.2 * share)
+        if is_lost(best, self.best) and not self.accepted:  # a second effect's fits take minutes, with the first in the arm
+            tried = [h.effects[0] for h in found]
+            found += self.fits.with_all_constants(self.found, trials, tried, done + 0.6 * share, 0.2 * share)
+        offset = OFFSET not in self.found.arm.effects
+        if offset and found and not any(self.rules.is_enough(h.score) for h in found):
+            found += self.fits.with_offset(found, done + 0.8 * share, 0.2 * share)
         if self.accepted:
             self._go_on()
         if not found:
             return False
-        measure = self._measure_of([h.score for h in found])
+        measure = self.rules.measure_of([h.score for h in found])
         found.sort(key=lambda h: measure(h.score))
         for hypothesis in reversed(found):
             gain = 1.0 - measure(hypothesis.score) / measure(self.best)
@@ -124,46 +103,31 @@ class Search:
         possible = [h for h in found if not at_bound(h)]
         return bool(possible) and self._accept(possible)
 
-    def _try_all(self, trials: list[Trial], tried: Sequence[str], done: float, share: float) -> list[Hypothesis]:
-        """Return the best hypotheses when every effect is fitted together with all constants, none of them bent out of shape.
-
-        Constants that made up for the missing effect leave nothing for its signature to explain.
-        """
-        names = [n for n in candidates(self.found.arm) if self.found.arm.known[n].fitted and n not in tried]
-        straight = put_back(self.found, self.nominal, BENT)
-        starts = [(n, start) for n in names for start in self._starts_of(n, straight, trials)]
-        arms = [straight.with_effect(n, **start) for n, start in starts]
-        tasks = [delayed(fit_briefly)(arm, self.nominal, self.data) for arm in (straight, *arms)]
-        fits: dict[str, tuple[float, Refit]] = {}
-        for i, (name, fit) in enumerate(zip(["", *(n for n, _ in starts)], self._parallel(tasks), strict=True)):
-            fits[name] = min(fit, fits.get(name, fit), key=lambda f: f[0])
-            self.say(done + 0.6 * share * (i + 1) / len(tasks), f"fitting {name or 'nothing'} and all constants")
-        control = excess(fits.pop("")[0])
-        better = [(error, name, found) for name, (error, found) in fits.items() if excess(error) < BRIEFLY_BETTER * control]
-        best = sorted(better, key=lambda fit: fit[0])[:FINALISTS]
-        chosen = [f.arm for _, _, f in best]
-        far = best[0][0] > FAR_OFF if best else False
-        return self._refit_all([(n,) for _, n, _ in best], chosen, done + 0.6 * share, 0.4 * share, thorough=far)
-
-    def _starts_of(self, effect: str, arm: Arm, trials: list[Trial]) -> list[dict[str, float]]:
-        """Return what an effect is fitted from: where its trial ended, and its own start if that did not help."""
-        control = next(t.cost for t in trials if not t.effect)
-        own = [(t.arm.effects[effect], t.cost < control) for t in trials if t.effect == effect]
-        first = [] if any(helped for _, helped in own) else [first_start(arm, effect, self.data.scales)]
-        return [dict(start) for start, _ in own] + first
+    def _refit_best(self, trials: list[Trial], done: float, share: float) -> list[Hypothesis]:
+        """Refit with the candidates that lower the cost most."""
+        control = next(t for t in trials if not t.effect)
+        lowest = min(t.cost for t in trials)
+        level = min(LEAST_CHANGE * control.cost, control.cost - LEAST_OF_BEST * (control.cost - lowest))
+        near = control.cost - NEAR_BEST * (control.cost - lowest)
+        better = [t for t in trials if t.effect and t.cost < level][:FINALISTS]
+        found: list[Hypothesis] = []
+        for part in ([t for t in better if t.cost <= near], [t for t in better if t.cost > near]):
+            if not any(self.rules.is_enough(h.score) for h in found):
+                found += self.fits.refit_all([(t.effect,) for t in part], [t.arm for t in part], done, share)
+        return found
 
     def _accept(self, found: list[Hypothesis]) -> bool:
         """Take the best hypothesis if it removes enough; the simplest of those that remove nearly as much."""
-        measure = self._measure_of([h.score for h in found])
+        measure = self.rules.measure_of([h.score for h in found])
         now = measure(self.best)
         singles = [h for h in found if len(h.effects) == 1]
         winner = found[0]
         if len(winner.effects) > 1 and singles:
             ways = (measure, in_windows)  # of models that are far off, one may rest where it should move, and err little
-            if not any(self._is_worth(singles[0].score, winner.score, way) for way in ways):
+            if not any(self.rules.is_worth(singles[0].score, winner.score, way) for way in ways):
                 winner = singles[0]
         removed = now - measure(winner.score)
-        if not self._is_worth(self.best, winner.score, measure) or (self.accepted and self._stays_lost(winner.score)):
+        if not self.rules.is_worth(self.best, winner.score, measure) or (self.accepted and stays_lost(winner.score, self.best)):
             return False
         rivals = self._rivals(winner, [h for h in found if len(h.effects) == len(winner.effects)], removed, measure)
         winner, same = rivals[0], [h.effects[0] for h in rivals]
@@ -188,7 +152,7 @@ class Search:
         if len(first) == 1:
             return first
         arms = [with_effects_of(h.refit.arm, self.nominal) for h in first]
-        again = self._refit_all([h.effects for h in first], arms, 0.7, 0.05)
+        again = self.fits.refit_all([h.effects for h in first], arms, 0.7, 0.05)
         order = self._order(winner.score, measure)
         better = [min(pair, key=order) for pair in zip(first, again, strict=True)]
         for hypothesis in better if len(winner.effects) == 1 else []:
@@ -200,42 +164,6 @@ class Search:
     def _order(self, best: Score, measure: Callable[[Score], float]) -> Callable[[Hypothesis], float]:
         """Return what rivals are ordered by: all of the data where the best comes near the noise, else what was held out."""
         return (lambda h: criterion(h, self.data)) if best.windows < NEAR[1] else (lambda h: measure(h.score))
-
-    def _measure_of(self, scores: Sequence[Score]) -> Callable[[Score], float]:
-        """Return the excess error by which hypotheses are judged; where torque noise is stated, no whole run says anything."""
-        return in_windows if self.noisy else measure_of(scores)
-
-    def _least(self, measure: Callable[[Score], float]) -> float:
-        """Return the excess error that an effect must remove at least."""
-        return max(LEAST_REMOVED, LEAST_OF_FIRST * measure(self.first))
-
-    def _is_enough(self, found: Score) -> bool:
-        """Whether an error leaves nothing to explain."""
-        return found.windows < PERFECT or excess(found.windows) < self._least(in_windows)
-
-    def _is_worth(self, without: Score, found: Score, measure: Callable[[Score], float]) -> bool:
-        """Whether one more effect removes enough of the excess error."""
-        removed = measure(without) - measure(found)
-        return removed >= max(LEAST_GAIN * measure(without), self._least(measure))
-
-    def _stays_lost(self, found: Score) -> bool:
-        """Whether one more effect leaves the model far off without halving its error both in windows and freely replayed.
-
-        What is missing then is something else, which a flexible enough effect imitates where it was fitted.
-        """
-        pairs = ((found.windows, self.best.windows), (found.free_run, self.best.free_run))
-        return found.windows > FAR_OFF and any(excess(new) > (1.0 - LEAST_GAIN_FAR_OFF) * excess(old) for new, old in pairs)
-
-    def _with_offset(self, found: list[Hypothesis], done: float, share: float) -> list[Hypothesis]:
-        """Return the hypotheses with a constant torque beside each: alone it hides what friction explains, and it them."""
-        if OFFSET in self.found.arm.effects:
-            return []
-        others = [h for h in found if h.effects != (OFFSET,)]
-        asks = self._parallel([delayed(asks_for_offset)(h.refit, self.data) for h in others])
-        pairs = [h for h, share in zip(others, asks, strict=True) if share > LEAST_OFFSET]
-        arms = [h.refit.arm.with_effect(OFFSET, torque=0.0) for h in pairs]
-        far = min(h.score.windows for h in found) > FAR_OFF
-        return self._refit_all([(*h.effects, OFFSET) for h in pairs], arms, done, share, thorough=far)
 
     def _go_on(self) -> None:
         """Refit once more without anything new: what that gains is no merit of another effect."""
@@ -257,16 +185,6 @@ class Search:
                 gain = 1.0 - trial.held_out / reference.held_out
                 self.ranking[trial.effect] = (float(np.clip(gain, 0.0, 1.0)), None)
 
-    def _screen(self, done: float, share: float) -> list[Trial]:
-        bases = screening_bases(self._starts(), self.data)
-        names = candidates(self.found.arm)
-        tasks = [delayed(try_effect)(base, name) for name in names for base in bases]
-        trials = [attempt(bases[0], None)]
-        for i, found in enumerate(self._parallel(tasks)):
-            trials += found
-            self.say(done + share * (i + 1) / len(tasks), f"trying {len(names)} effects")
-        return best_trials(trials)
-
     def _starts(self) -> list[Refit]:
         """Constants from which candidates are tried: the refitted ones, and the nominal ones where the refit did little.
 
@@ -278,32 +196,13 @@ class Search:
         unmoved = as_it_is(self.nominal, self.data)
         return [unmoved] if helped > REFIT_FAILS else [self.found, unmoved]
 
-    def _refit_all(
-        self, effects: Sequence[tuple[str, ...]], arms: Sequence[Arm], done: float, share: float, thorough: bool = False
-    ) -> list[Hypothesis]:
-        pairs = zip(effects, arms, strict=True)
-        tasks = [delayed(fit_hypothesis)(e, arm, self.nominal, self.data, thorough) for e, arm in pairs]
-        out = []
-        for i, hypothesis in enumerate(self._parallel(tasks)):
-            out.append(hypothesis)
-            self.say(done + share * (i + 1) / len(tasks), f"refitting with {' and '.join(hypothesis.effects)}")
-        return out
-
-    def _parallel(self, tasks):  # type: ignore[no-untyped-def]
-        if len(tasks) > 1:
-            yield from Parallel(n_jobs=self.jobs, return_as="generator")(tasks)
-        for function, positional, named in tasks if len(tasks) == 1 else []:
-            with in_threads(self.jobs):
-                found = function(*positional, **named)
-            yield found
-
     def _drop_useless(self) -> None:
         """Take out an effect that the later ones have made needless."""
         for effect in list(self.accepted) if len(self.accepted) > 1 else []:
             without = refit(self.found.arm.without_effect(effect), self.nominal, self.data)
             value = score(without.arm, self.data)
-            measure = self._measure_of([value, self.best])
-            if not self._is_worth(value, self.best, measure):
+            measure = self.rules.measure_of([value, self.best])
+            if not self.rules.is_worth(value, self.best, measure):
                 self.found, self.best = without, value
                 place = self.accepted.index(effect)
                 del self.accepted[place], self.equivalent[place], self.steps[effect]
@@ -315,9 +214,9 @@ class Search:
         lacking = candidates(without)
         rivals = [(name,) for name in without.known[OFFSET].confused_with if name in lacking]
         arms = [without.with_effect(name) for (name,) in rivals]
-        found = self._refit_all(rivals, arms, 0.9, 0.05, thorough=False)
+        found = self.fits.refit_all(rivals, arms, 0.9, 0.05, thorough=False)
         found = [h for h in found if not at_bound(h)]
-        measure = self._measure_of([self.best, *(h.score for h in found)])
+        measure = self.rules.measure_of([self.best, *(h.score for h in found)])
         level = measure(self.best) + SAME_GAIN * (measure(self.first) - measure(self.best))
         order = self._order(self.best, measure)
         best = min(found, key=order, default=None)
