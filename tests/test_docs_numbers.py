@@ -54,7 +54,10 @@ def baselines_table(numbers: str) -> str:
     from agents.report import summary_of
 
     result = json.loads(numbers)
-    words = f"The slew over 100°, means over {result['arms']} arms of each set; an arm that never settles counts with 5 s:"
+    words = (
+        f"The slew over 100°, means over {result['arms']} arms: as in the file (nominal), or with up to 0.3 kg at the tip\n"
+        "and constants that differ (randomised). An arm that never settles counts with 5 s."
+    )
     return f"{words}\n\n{summary_of(result)}"
 
 
