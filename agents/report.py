@@ -16,7 +16,7 @@ COLUMNS = (
     ("energy", "energy [A² s]", 1),
 )
 #: Controllers and sets of the short table: one of each kind, the best of its kind.
-SHORT, SHORT_SETS = ("pd", "vibration_dual", "vibration_low", "shaped_zvd", "lqg", "lqg_scheduled"), ("nominal", "randomised")
+SHORT, SHORT_SETS = ("pd", "vibration_dual", "shaped_zvd", "lqg", "lqg_scheduled"), ("nominal", "randomised")
 
 
 def table_of(result: Mapping[str, Any]) -> str:

@@ -131,7 +131,7 @@ SENSOR = {
     "filter": Parameter("s", 0.0, 10.0, 0.0, spread=0.0, meaning="time constant of a first-order filter"),
     "delay": Parameter("s", 0.0, 1.0, 0.0, spread=0.0, meaning="dead time of the reading"),
     "position": Parameter("m", 0.0, 1e2, 0.0, spread=0.0, meaning="of a strain gage along the beam"),
-    "per_volt": Parameter("", -1e6, 1e6, 1.0, spread=0.0, meaning="quantity per volt of a recording in volts"),
+    "per_volt": Parameter("", -1e6, 1e6, 0.0, spread=0.0, meaning="quantity per volt of a recording in volts; 0: not stated"),
 }
 
 

@@ -12,7 +12,6 @@ from flexarm_env.effects.catalogue import load_effect
 from flexarm_env.errors import InputError
 from flexarm_env.identify.columns import CALIBRATED
 from flexarm_env.identify.recording import Recording
-from flexarm_env.parameters import SENSOR
 
 _ENOUGH = 1 << 16
 
@@ -45,8 +44,7 @@ def read_recordings(arm: Arm, paths: Sequence[Path], columns: Path | None, measu
 
 def calibration(arm: Arm) -> dict[str, float]:
     """Return the quantity per volt of each signal for which the arm file states one."""
-    usual = SENSOR["per_volt"].typical
-    return {s: table["per_volt"] for s, table in arm.sensors.items() if table["per_volt"] != usual and s in CALIBRATED}
+    return {s: table["per_volt"] for s, table in arm.sensors.items() if table["per_volt"] != 0.0 and s in CALIBRATED}
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:

@@ -127,18 +127,19 @@ def test_simulate_plays_commands_without_signals(flexarm, arm, tmp_path):
     assert "--arm" in flexarm.refused("simulate", "--save", tmp_path / "run.csv", "--input", tmp_path / "volts.csv")
 
 
-def test_an_arm_s_columns_and_volts_serve_its_recordings(flexarm, identify, tmp_path):
-    text = GOOD_ARM.replace('noise = "0.1 deg"', 'noise = "0.1 deg"\nper_volt = "2 rad/V"')
+@pytest.mark.parametrize("per_volt", [2.0, 1.0])
+def test_an_arm_s_columns_and_volts_serve_its_recordings(flexarm, identify, tmp_path, per_volt):
+    text = GOOD_ARM.replace('noise = "0.1 deg"', f'noise = "0.1 deg"\nper_volt = "{per_volt} rad/V"')
     text += "[columns]\ntime = {index = 0, unit = 'ms'}\ncurrent = {index = 1, unit = 'A'}\n"
     text += "arm_angle = {index = 2, unit = 'V', sign = -1}\n"
     (tmp_path / "arm.toml").write_text(text)
     (tmp_path / "foreign.csv").write_text("t,i,pot\n0,1,0\n10,1,0.5\n20,1,0.6\n")
     (tmp_path / "native.csv").write_text(HEADER.replace("rad", "V") + ROWS)
     assert flexarm("compare", tmp_path / "foreign.csv", "--arm", tmp_path / "arm.toml") == 0
-    assert identify.log[0][2][0].signals["arm_angle"].tolist() == [0.0, -1.0, -1.2]
+    assert identify.log[0][2][0].signals["arm_angle"].tolist() == [0.0, -0.5 * per_volt, -0.6 * per_volt]
     assert identify.log[0][2][0].time[1] == pytest.approx(0.01)
     assert flexarm("compare", tmp_path / "native.csv", "--arm", tmp_path / "arm.toml") == 0
-    assert identify.log[1][2][0].signals["arm_angle"].tolist() == [0.0, 0.2, 0.4]
+    assert identify.log[1][2][0].signals["arm_angle"].tolist() == [0.0, 0.1 * per_volt, 0.2 * per_volt]
 
 
 def test_effects_shows_the_catalogue_and_each_page(flexarm):
