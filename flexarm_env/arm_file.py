@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -11,13 +10,12 @@ from typing import Any
 from flexarm_env.arm import Arm, check_bounds
 from flexarm_env.effects import Catalogue
 from flexarm_env.errors import InputError, did_you_mean
-from flexarm_env.files import write_whole
+from flexarm_env.files import read_toml, write_whole
 from flexarm_env.parameters import DEFAULTS, SECTIONS, SENSOR, Parameter, sensor_unit
 from flexarm_env.signals import INPUTS, SIGNALS
 from flexarm_env.units import quantity
 
 TOP = ("name", "description", "fixed", "drive", "hub", "beam", "sensors", "effects", "columns", "fitted", "origin")
-LARGEST_FILE = 1_000_000
 
 
 def arm_folders() -> list[Path]:
@@ -43,12 +41,7 @@ def read_arm(source: str | Path, known: Catalogue) -> Arm:
         path = shipped[str(source)]
     if not path.is_file():
         raise InputError(f"no arm '{source}': neither a file nor a shipped arm{did_you_mean(str(source), shipped)}")
-    if path.stat().st_size > LARGEST_FILE:
-        raise InputError(f"{path} is larger than {LARGEST_FILE} bytes: that is no arm file")
-    try:
-        table = tomllib.loads(path.read_bytes().decode("utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"{path} is not TOML: {error}") from None
+    table = read_toml(path)
     try:
         return arm_from_table(table, path.stem, known)
     except InputError as error:
@@ -60,7 +53,7 @@ def arm_from_table(table: Mapping[str, Any], name: str, known: Catalogue) -> Arm
     _refuse_unknown("", table, TOP)
     drive = dict(_table(table, "drive"))
     kind = drive.pop("input", "current")
-    if kind not in INPUTS:
+    if not isinstance(kind, str) or kind not in INPUTS:
         raise InputError(f"drive.input = {kind!r}{did_you_mean(str(kind), INPUTS)}")
     constants = {"drive": _section("drive", drive), "hub": _section("hub", _table(table, "hub"))}
     if kind == "voltage" and constants["drive"]["resistance"] <= 0.0:
@@ -76,9 +69,9 @@ def arm_from_table(table: Mapping[str, Any], name: str, known: Catalogue) -> Arm
         constants=constants,
         sensors=sensors,
         fixed=_fixed(table.get("fixed", []), constants, sensors),
-        columns=table.get("columns"),
-        fitted=table.get("fitted", {}),
-        origin=table.get("origin", {}),
+        columns=_table(table, "columns") if "columns" in table else None,
+        fitted=_table(table, "fitted", {}),
+        origin=_table(table, "origin", {}),
         description=str(table.get("description", "")),
         known=known,
     )
@@ -107,14 +100,14 @@ def _fixed(given: Any, constants: Mapping[str, Any], sensors: Mapping[str, Any])
     return [str(path) for path in given]
 
 
-def _table(table: Mapping[str, Any], key: str, default: Mapping[str, Any] | None = None) -> Mapping[str, Any]:
+def _table(table: Mapping[str, Any], key: str, default: dict[str, Any] | None = None) -> dict[str, Any]:
     if key not in table:
         if default is not None:
             return default
         raise InputError(f"table [{key}] is missing")
-    if not isinstance(table[key], Mapping):
+    if not isinstance(table[key], dict):
         raise InputError(f"{key} is not a table; write [{key}]")
-    found: Mapping[str, Any] = table[key]
+    found: dict[str, Any] = table[key]
     return found
 
 

@@ -118,6 +118,24 @@ def factor(unit: str, target: str, scale: str | float = 1.0) -> float:
     return number * float(_registry().Quantity(1.0, source).to(goal).magnitude)
 
 
+def check_unit(unit: str) -> None:
+    """Raise InputError for a unit, of a program rather than a file, that does not exist."""
+    import pint
+
+    try:
+        _registry().parse_units(unit)
+    except (pint.PintError, ValueError):
+        raise InputError(f"unknown unit {unit[:_LONGEST]!r}; write one that pint knows, such as N*m/rad") from None
+
+
+def as_float(value: float) -> float:
+    """Return a number as a float; infinity for a whole number that no float can be."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
+
+
 def is_quantity(text: str) -> bool:
     """Tell whether a text has the form of a number, alone or with a unit (which need not exist)."""
     match = _QUANTITY.match(text)
@@ -143,7 +161,7 @@ def quantity(value: str | float, target: str) -> float:
         InputError: for a text that is no number with a unit, or a unit that does not convert to `target`.
     """
     if not isinstance(value, str):
-        return float(value)
+        return as_float(value)
     number, unit = split(value)
     if unit and not target:
         raise InputError(f"unit '{unit}' on a bare number; write {number:g}")

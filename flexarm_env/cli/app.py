@@ -65,7 +65,7 @@ def compare(
     json: Json = None,
 ) -> None:
     """Replay recordings through an arm: error per signal, regime and frequency band, against the noise."""
-    _check(json, report, pictures=report is not None)
+    _check(json, report, read=_read(recordings, columns, arm), specs=effects, pictures=report is not None)
     model, runs = _load(recordings, arm, columns, effects)
     from flexarm_env.cli import outputs, tables, work
 
@@ -88,11 +88,12 @@ def diagnose(
         Path | None, typer.Option(metavar="FILE.csv", help="Write the input to record next, where something stays open.")
     ] = None,
     seed: Seed = 0,
-    jobs: Annotated[int, typer.Option(min=1, help="Processes to use.")] = 2,
+    jobs: Annotated[int, typer.Option(min=1, max=256, help="Processes to use.")] = 2,
     json: Json = None,
 ) -> None:
     """Tell whether constants are wrong or an effect is missing, which one, how sure, and what would settle it."""
-    _check(json, report, save, next_run, pictures=report is not None)
+    read = _read(recordings, columns, arm, save)
+    _check(json, report, save, next_run, read=read, specs=effects, pictures=report is not None)
     model, runs = _load(recordings, arm, columns, effects)
     from flexarm_env.cli import outputs, tables, work
     from flexarm_env.files import write_whole
@@ -122,9 +123,10 @@ def add(
     json: Json = None,
 ) -> None:
     """Add one effect to an arm and refit: error before, refitted, after. Exit code 1 if it does not fall."""
-    _check(json, save)
     own = [effect] if ".py:" in effect else []
-    model, runs = _load(recordings, arm, columns, [*(effects or []), *own])
+    specs = [*(effects or []), *own]
+    _check(json, save, read=_read(recordings, columns, arm, save), specs=specs)
+    model, runs = _load(recordings, arm, columns, specs)
     from flexarm_env.cli import tables, work
 
     result = work.add(work.own_name(effect) if own else effect, model, runs, seed)
@@ -145,7 +147,7 @@ def fit(
     json: Json = None,
 ) -> None:
     """Refit the constants of an arm, and add nothing."""
-    _check(json, save)
+    _check(json, save, read=_read(recordings, columns, arm, save), specs=effects)
     model, runs = _load(recordings, arm, columns, effects)
     from flexarm_env.cli import tables, work
 
@@ -170,7 +172,7 @@ def simulate(
     json: Json = None,
 ) -> None:
     """Make a recording with an arm's model."""
-    _check(json, save)
+    _check(json, save, read=_read([Path(input)] if input else [], columns, arm), specs=effects)
     from flexarm_env.cli import work
 
     model = _arm(arm, effects)
@@ -244,12 +246,25 @@ def bench(context: typer.Context) -> None:
     raise typer.Exit(work.bench(context.args))
 
 
-def _check(*places: Path | None, pictures: bool = False) -> None:
+def _check(
+    json: Path | None,
+    *places: Path | None,
+    read: Sequence[Path] = (),
+    specs: Sequence[str] | None = None,
+    pictures: bool = False,
+) -> None:
     from flexarm_env.cli import outputs
 
-    outputs.check_place(*places)
+    files = [Path(spec.rpartition(":")[0]) for spec in specs or () if ":" in spec]
+    outputs.check_places(json, *places, read=[*read, *files])
     if pictures:
         outputs.need_plots()
+
+
+def _read(recordings: Sequence[Path], columns: Path | None, arm: str, save: Path | None = None) -> list[Path]:
+    """Return what a command reads and must not write; the arm's own file may be saved anew."""
+    found = [*recordings, *([columns] if columns is not None else [])]
+    return [*found, Path(arm)] if Path(arm).is_file() and save != Path(arm) else found
 
 
 def _command(

@@ -54,7 +54,7 @@ def _page(effect: type[Effect]) -> Sequence[RenderableType]:
         ("needs", ", ".join(effect.needs)),
         ("source", effect.source),
     ]
-    heading = Text.assemble((effect.name, "bold"), f"\n{(effect.__doc__ or '').strip().splitlines()[0]}")
+    heading = Text.assemble((effect.name, "bold"), f"\n{(effect.__doc__ or effect.__name__).strip().splitlines()[0]}")
     return [
         heading,
         Text(f"    {effect.equation}"),

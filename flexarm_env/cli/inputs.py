@@ -12,6 +12,7 @@ from flexarm_env.effects.catalogue import load_effect
 from flexarm_env.errors import InputError
 from flexarm_env.identify.columns import CALIBRATED
 from flexarm_env.identify.recording import Recording
+from flexarm_env.identify.recording_files import files_of
 
 _ENOUGH = 1 << 16
 
@@ -34,7 +35,7 @@ def read_recordings(arm: Arm, paths: Sequence[Path], columns: Path | None, measu
         InputError: for a recording that cannot be read, or that does not fit the arm.
     """
     layout: Any = columns
-    if columns is None and arm.columns and not all(map(_is_native, _files(paths))):
+    if columns is None and arm.columns and not all(map(_is_native, files_of(paths))):
         layout = arm.columns
     recordings = Recording.read_all(paths, layout, calibration(arm), measured)
     for recording in recordings:
@@ -47,15 +48,13 @@ def calibration(arm: Arm) -> dict[str, float]:
     return {s: table["per_volt"] for s, table in arm.sensors.items() if table["per_volt"] != 0.0 and s in CALIBRATED}
 
 
-def _files(paths: Sequence[Path]) -> list[Path]:
-    return [file for path in paths for file in (path.glob("*.csv") if path.is_dir() else [path])]
-
-
 def _is_native(path: Path) -> bool:
     """Tell whether a file has FlexArm's own header, in which case no column map is needed."""
+    if not path.is_file():  # a pipe would wait for ever
+        return False
     try:
         with path.open("rb") as file:
-            lines = file.read(_ENOUGH).decode("utf-8", "replace").splitlines()
+            lines = file.read(_ENOUGH).decode("utf-8-sig", "replace").splitlines()
     except OSError:
         return False
     header = next((line for line in lines if line.strip() and not line.startswith("#")), "")

@@ -8,7 +8,7 @@ import math
 import os
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,21 +20,37 @@ from flexarm_env.identify.recording import Recording
 STDOUT = Path("-")
 
 
-def check_place(*paths: Path | None) -> None:
+def check_places(json: Path | None, *others: Path | None, read: Iterable[Path] = ()) -> None:
     """Refuse places that cannot be written, before an hour's work is done.
 
+    Args:
+        json: for the JSON, which alone may go to stdout ("-").
+        others: for whatever else is written.
+        read: files and folders that are read, none of which may be written over.
+
     Raises:
-        InputError: for a folder that is not there or not writable, or a folder in place of a file.
+        InputError: for a folder that is not there or not writable, a place that holds no file, or one that is used twice.
     """
-    for path in paths:
-        if path is None or path == STDOUT:
+    used = {os.path.realpath(file) for path in read for file in (path.iterdir() if path.is_dir() else [path])}
+    for path in (json, *others):
+        if path is None or (path == STDOUT and path is json):
             continue
+        if path == STDOUT:
+            raise InputError("only --json writes to stdout; name a file in the place of -")
         if path.is_dir():
             raise InputError(f"cannot write {path}: it is a folder; name a file in it")
+        if path.exists() and not path.is_file():
+            raise InputError(f"cannot write {path}: it is no regular file; name another")
+        place = os.path.realpath(path)
+        if place in used:
+            raise InputError(f"cannot write {path}: the same command reads or writes it already; name another file")
+        used.add(place)
         if not path.parent.is_dir():
             raise InputError(f"cannot write {path}: there is no folder {path.parent}; make it first")
         if not os.access(path.parent, os.W_OK):
             raise InputError(f"cannot write {path}: folder {path.parent} is not writable; name another")
+        if path.exists() and not os.access(path, os.W_OK):
+            raise InputError(f"cannot write {path}: it is there and must not be written; name another")
 
 
 def need_plots() -> None:

@@ -116,7 +116,7 @@ def _notes(notes: Sequence[str]) -> list[RenderableType]:
 def steps(steps_: Sequence[tuple[str, float]], free: Sequence[tuple[str, float]]) -> Table:
     """Return the error after each step."""
     runs = dict(free) | ({steps_[-1][0]: free[-1][1]} if steps_ and free else {})  # both end with the final model
-    largest = max((value for _, value in steps_), default=1.0)
+    largest = max((value for _, value in steps_), default=0.0) or 1.0  # 0 where nothing moves and nothing is modelled to
     rows = [
         [name, number(value), number(runs[name]) if name in runs else NOTHING, words.bar(value / largest)]
         for name, value in steps_

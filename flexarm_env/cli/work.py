@@ -129,7 +129,7 @@ def simulate(
     from flexarm_env.identify.simulate import EXPERIMENTS
 
     played: str | Recording = source
-    if source not in EXPERIMENTS and Path(source).exists():
+    if source and source not in EXPERIMENTS and Path(source).exists():
         found = read_recordings(arm, [Path(source)], columns, measured=False)
         if len(found) != 1:
             raise InputError(f"{source}: holds {len(found)} recordings; name one")

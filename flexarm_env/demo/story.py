@@ -67,7 +67,7 @@ def _make(folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot make folder {folder}: {error.strerror}; name another with --output") from None
-    outputs.check_place(folder / "demo.json")
+    outputs.check_places(None, folder / "demo.json")
 
 
 def _heading(out: Console, command: str, sentence: str) -> None:

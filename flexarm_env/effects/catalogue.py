@@ -12,11 +12,12 @@ from functools import lru_cache
 from importlib.metadata import entry_points
 from pathlib import Path
 
-from flexarm_env.effects.base import Effect
+from flexarm_env.effects.base import PORT_ARGUMENTS, Effect
+from flexarm_env.effects.checks import checked
 from flexarm_env.errors import InputError, did_you_mean
 
 #: Ports that run in the compiled kernel.
-LAW_PORTS = ("friction", "factor", "presliding", "torque", "weight", "drag", "drive", "sensor")
+LAW_PORTS = tuple(PORT_ARGUMENTS)
 
 Law = tuple[str, str, Callable[..., float], tuple[str, ...]]
 
@@ -61,9 +62,9 @@ def catalogue() -> Catalogue:
     package = importlib.import_module("flexarm_env.effects")
     found = []
     for module in pkgutil.iter_modules(package.__path__):
-        if module.name not in ("base", "catalogue"):
+        if module.name not in ("base", "catalogue", "checks"):
             found += _effects_in(importlib.import_module(f"flexarm_env.effects.{module.name}"))
-    found += [point.load() for point in entry_points(group="flexarm_env.effects")]
+    found += [checked(point.load()) for point in entry_points(group="flexarm_env.effects")]
     return Catalogue(found)
 
 
@@ -95,20 +96,10 @@ def load_effect(spec: str) -> type[Effect]:
     sys.modules[module_name] = module
     try:
         module_spec.loader.exec_module(module)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise InputError(f"{path} does not load: {type(error).__name__}: {error}") from error
     cloudpickle.register_pickle_by_value(module)  # worker processes cannot import it by its name
     found = {effect.__name__: effect for effect in _effects_in(module)}
     if name not in found:
         raise InputError(f"{path} has no effect '{name}'{did_you_mean(name, found)}")
     return checked(found[name])
-
-
-def checked(effect: type[Effect]) -> type[Effect]:
-    """Return the effect if it is whole, else say what it lacks."""
-    for attribute in ("name", "equation", "parameters", "looks_like"):
-        if not hasattr(effect, attribute):
-            raise InputError(f"effect {effect.__name__} lacks '{attribute}'")
-    if not any(effect.port(port) for port in ("structure", *LAW_PORTS)):
-        raise InputError(f"effect {effect.__name__} has no port: give it one of structure, {', '.join(LAW_PORTS)}")
-    return effect

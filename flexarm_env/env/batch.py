@@ -179,13 +179,14 @@ class Batch:
                 self.episodes[arm] += 1
             else:
                 self.seeds[arm], self.episodes[arm] = np.uint64(seed % 2**64), 0
+        drawn = [self.setup.arm] * len(arms)
         if self.setup.variation.ranges and len(arms):
             drawn = [self.arm_of(int(arm)) for arm in arms]
             self.constants[arms] = self.plant.constants_of([arm.structure() for arm in drawn], [arm.laws() for arm in drawn])
-        for arm in arms:
-            self._start(int(arm))
+        for i, arm in enumerate(arms):
+            self._start(int(arm), drawn[i])
 
-    def _start(self, arm: int) -> None:
+    def _start(self, arm: int, drawn: Arm) -> None:
         setup, own = self.setup, self.own[arm]
         self.keys[arm] = self._key(arm, "sensors")
         plant = self.plant
@@ -198,6 +199,7 @@ class Batch:
         plant.kernel.look_batch(self.arena, plant.layout, self.physics, arm, arm + 1)
         angle = self.looks[arm, -TRUTH]
         own[:] = self.told[:, arm] = 0.0
+        own[at.LENGTH], own[at.PER_TORQUE] = drawn.constants.get("beam", {}).get("length", 1.0), _per_torque(drawn)
         own[at.FIRST_ANGLE] = angle
         own[at.FIRST_TARGET] = self.told[at.TARGET, arm] = angle if setup.task.hold else setup.task.target
         self.history[arm] = self.looks[arm, :-TRUTH]
@@ -280,15 +282,18 @@ def _sensors(setup: Setup) -> Floats:
     return table
 
 
-def _settings(setup: Setup, limit: float) -> Floats:
-    drive, trouble, rate = setup.arm.constants["drive"], setup.disturbance, setup.rate
+def _per_torque(arm: Arm) -> float:
+    """Return the command [A or V] that is as much as a torque on the hub [1/Nm]."""
+    drive = arm.constants["drive"]
     per_torque = 1.0 / (drive["gear_ratio"] * drive["torque_constant"])
-    if setup.arm.input == "voltage":
-        per_torque *= drive["resistance"]
+    return per_torque * drive["resistance"] if arm.input == "voltage" else per_torque
+
+
+def _settings(setup: Setup, limit: float) -> Floats:
+    trouble, rate = setup.disturbance, setup.rate
     settings = np.zeros(at.SETTINGS)
     settings[at.INTERVAL], settings[at.HALF_PERIOD], settings[at.RANGE] = 1.0 / rate, setup.task.half_period, setup.task.range
-    settings[at.LENGTH] = setup.arm.constants.get("beam", {}).get("length", 1.0)
-    settings[at.LIMIT], settings[at.PER_TORQUE], settings[at.TARGET_SCALE] = limit, per_torque, setup.scales()[-1]
+    settings[at.LIMIT], settings[at.TARGET_SCALE] = limit, setup.scales()[-1]
     settings[at.TAP_CHANCE], settings[at.TAP_TORQUE] = trouble.tap_rate / rate, trouble.tap_torque
     settings[at.TAP_SAMPLES] = max(round(trouble.tap_time * rate), 1)
     settings[at.DROP_CHANCE], settings[at.DROP_SAMPLES] = trouble.dropout_rate / rate, max(round(trouble.dropout_time * rate), 1)

@@ -40,8 +40,10 @@ def make_setup(
     Raises:
         InputError: for an argument that does not make sense, in one line.
     """
-    if not isinstance(control_rate, int | float | np.number):
+    if isinstance(control_rate, bool) or not isinstance(control_rate, int | float | np.number):
         raise InputError(f"control_rate = {control_rate!r}; give a number [Hz]")
+    if not isinstance(physical, bool | np.bool_):
+        raise InputError(f"physical = {physical!r}; give True or False")
     drawn, variation = find_variation(find_arm(arm), randomise, vary)
     return Setup(find_task(task), drawn, variation, find_disturbance(disturb), float(control_rate), bool(physical))
 

@@ -15,16 +15,15 @@ from numba import njit
 
 # --- settings: one number each, for all arms
 (
-    INTERVAL, HALF_PERIOD, RANGE, LENGTH, LIMIT, TAP_CHANCE, TAP_TORQUE, TAP_SAMPLES, DROP_CHANCE, DROP_SAMPLES, PER_TORQUE,
-    TARGET_SCALE,
-) = range(12)  # fmt: skip
-WEIGHTS = 12
+    INTERVAL, HALF_PERIOD, RANGE, LIMIT, TAP_CHANCE, TAP_TORQUE, TAP_SAMPLES, DROP_CHANCE, DROP_SAMPLES, TARGET_SCALE,
+) = range(10)  # fmt: skip
+WEIGHTS = 10
 TERMS = 6
 SETTINGS = WEIGHTS + TERMS
 
 # --- columns of each arm's own numbers
-FIRST_TARGET, FIRST_ANGLE, TAP_LEFT, TAP, DROP_LEFT, DROPPED = range(6)
-COLUMNS = 6
+FIRST_TARGET, FIRST_ANGLE, TAP_LEFT, TAP, DROP_LEFT, DROPPED, LENGTH, PER_TORQUE = range(8)
+COLUMNS = 8
 
 # --- rows of what is told of all arms, those of an info first: the truth, the target, the command, the reward's terms
 TRUTH_ROWS = 4
@@ -187,7 +186,7 @@ def push(a, places, key, arm):
     if a[own + TAP_LEFT] <= 0.0:
         return 0.0
     a[own + TAP_LEFT] -= 1.0
-    return a[own + TAP] * a[settings + PER_TORQUE]
+    return a[own + TAP] * a[own + PER_TORQUE]
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
@@ -262,7 +261,7 @@ def judge(a, places, arm):
     terms = (
         -distance,
         math.exp(-distance / NEAR),
-        -abs(tip) / a[settings + LENGTH],
+        -abs(tip) / a[own + LENGTH],
         -((asked / a[settings + LIMIT]) ** 2),
         -((change / a[settings + LIMIT]) ** 2),
         -1.0 if failed else 0.0,

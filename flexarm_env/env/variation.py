@@ -7,6 +7,8 @@ import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from flexarm_env.arm import Arm, check_bounds
 from flexarm_env.effects import Effect
 from flexarm_env.errors import InputError, did_you_mean
@@ -14,6 +16,10 @@ from flexarm_env.errors import InputError, did_you_mean
 Range = Sequence[float]
 #: Stands in a parameter's range for absence: the smallest share of it that still counts as present.
 LEAST_SHARE = 1e-9
+LARGEST_SETTING = 1e6
+#: Constants that are the same for all arms of an environment: actions are shares of the limit, and identification alone
+#: knows the noise.
+NEVER_DRAWN = ("drive.limit", "drive.torque_noise")
 #: Settings of a sensor that the plant works in; noise, steps and delay are the same for all arms of an environment.
 IN_THE_PLANT = ("gain", "offset", "filter", "position")
 EXAMPLES = {"randomise": '{"payload.mass": (0.0, 0.3)}', "vary": '{"hub.inertia": 0.1}', "disturb": '{"tap_rate": 1.0}'}
@@ -39,8 +45,8 @@ class Disturbance:
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
-            if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0.0):
-                raise InputError(f"disturb: {name} = {value!r}; give a number from 0 up")
+            if not (isinstance(value, int | float | np.number) and 0.0 <= value <= LARGEST_SETTING):
+                raise InputError(f"disturb: {name} = {value!r}; give a number from 0 to {LARGEST_SETTING:g}")
 
 
 def find_disturbance(given: Disturbance | Mapping[str, float] | None) -> Disturbance:
@@ -55,7 +61,7 @@ def find_disturbance(given: Disturbance | Mapping[str, float] | None) -> Disturb
         raise InputError(f"disturb = {given!r}; give a table such as {EXAMPLES['disturb']}")
     for name in given or {}:
         if name not in Disturbance.__dataclass_fields__:
-            raise InputError(f"disturb: unknown setting '{name}'{did_you_mean(name, Disturbance.__dataclass_fields__)}")
+            raise InputError(f"disturb: unknown setting '{name}'{did_you_mean(str(name), Disturbance.__dataclass_fields__)}")
     return Disturbance(**(given or {}))
 
 
@@ -86,17 +92,37 @@ def find_variation(arm: Arm, randomise: Mapping[str, Range] | None, vary: Mappin
     for name, table in (("randomise", randomise), ("vary", vary)):
         if not isinstance(table, Mapping | None):
             raise InputError(f"{name} = {table!r}; give a table such as {EXAMPLES[name]}")
+    for path in (*(randomise or {}), *(vary or {})):
+        if not isinstance(path, str):
+            raise InputError(f"randomise or vary: {path!r} is no path; write one such as 'hub.inertia'")
     for path, given in (randomise or {}).items():
         low, high = _pair(path, given)
         arm, place = _place(arm, path)
         ranges.append((place, *_bounded(arm, place, low, high)))
     for path, share in (vary or {}).items():
-        if not (isinstance(share, int | float) and 0.0 <= share < 1.0):
+        if not (isinstance(share, int | float | np.number) and 0.0 <= share < 1.0):
             raise InputError(f"vary: {path} = {share}; give a share from 0 to less than 1, as 0.1 for ±10 %")
         arm, place = _place(arm, path)
-        ends = sorted((arm.value(place) * (1.0 - share), arm.value(place) * (1.0 + share)))
+        ends = sorted(arm.value(place) * (1.0 + sign * float(share)) for sign in (-1, 1))
         ranges.append((place, *_bounded(arm, place, *ends)))
+    _check_together(arm, ranges)
     return arm, Variation(tuple(ranges))
+
+
+def _check_together(arm: Arm, ranges: Sequence[tuple[str, float, float]]) -> None:
+    """Refuse a value that is drawn twice, and a gage that may lie beyond the beam's end."""
+    places = [place for place, _, _ in ranges]
+    for place in places:
+        if places.count(place) > 1:
+            raise InputError(f"'{place}' is drawn twice; name it once, in randomise or in vary")
+    ends = {place: (low, high) for place, low, high in ranges}
+    length = arm.constants.get("beam", {}).get("length", math.inf)
+    shortest = ends.get("beam.length", (length, length))[0]
+    for signal, sensor in arm.sensors.items():
+        place = f"sensors.{signal}.position"
+        furthest = ends.get(place, (0.0, sensor["position"]))[1]
+        if furthest > shortest:
+            raise InputError(f"{place} may be {furthest:g} m, beyond the beam's end at {shortest:g} m; narrow the ranges")
 
 
 def _pair(path: str, given: Range) -> tuple[float, float]:
@@ -111,6 +137,8 @@ def _pair(path: str, given: Range) -> tuple[float, float]:
 
 def _place(arm: Arm, path: str) -> tuple[Arm, str]:
     """Return the arm, with the effect if it lacks it, and the full path of a value."""
+    if path in NEVER_DRAWN:
+        raise InputError(f"'{path}' is the same for all arms of an environment; change it in the arm file")
     section, _, key = path.removeprefix("effects.").partition(".")
     if section in arm.known and key in arm.known[section].parameters:
         return (arm if section in arm.effects else arm.with_effect(section)), f"effects.{section}.{key}"
@@ -120,7 +148,7 @@ def _place(arm: Arm, path: str) -> tuple[Arm, str]:
             return arm, path
     elif key in arm.constants.get(section, {}):
         return arm, path
-    every = [f"{s}.{k}" for s, table in arm.constants.items() for k in table]
+    every = [f"{s}.{k}" for s, table in arm.constants.items() for k in table if f"{s}.{k}" not in NEVER_DRAWN]
     every += [f"sensors.{signal}.{key}" for signal in arm.sensors for key in IN_THE_PLANT]
     every += [f"{name}.{k}" for name in arm.known for k in arm.known[name].parameters]
     raise InputError(f"no value '{path}' in arm '{arm.name}'{did_you_mean(path, every)}")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import os
 import re
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import Any
 
 from flexarm_env import units
 from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.files import read_toml
 from flexarm_env.signals import INPUTS, SIGNALS
 
 UNITS = {"time": "s", **INPUTS, **SIGNALS, "reference": "rad"}
@@ -167,13 +167,7 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
     if isinstance(columns, Mapping):
         return _column_map(columns, measured)
     path = Path(columns)
-    try:
-        document = tomllib.loads(path.read_bytes().decode("utf-8"))
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror}; name a TOML file with a [columns] table") from None
-    except ValueError as error:
-        raise InputError(f"{path}: not a TOML file: {' '.join(str(error).split())}") from None
-    table = document.get("columns")
+    table = read_toml(path).get("columns")
     if not isinstance(table, dict):
         raise InputError(f"{path}: has no [columns] table; put the map under a line [columns]")
     try:
@@ -247,4 +241,4 @@ def _typed(key: str, value: Any, kind: type) -> Any:
     if isinstance(value, bool) or not isinstance(value, accepted):
         words = {str: "a text", int: "a whole number", float: "a number"}
         raise InputError(f"[columns] {key}: is {value!r}; write {words[kind]}")
-    return value
+    return units.as_float(value) if isinstance(value, int | float) and kind is float else value

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import difflib
 import re
@@ -20,7 +21,7 @@ from flexarm_env.identify.columns import ColumnMap, Source, check_names, native_
 LARGEST_FILE = 256 * 2**20
 CONDITIONS = {"payload": "kg", "start": "s"}
 
-_CONDITION = re.compile(r"#\s*([A-Za-z_]\w*)\s*=\s*(.*?)\s*")
+_CONDITION = re.compile(r"#+\s*([A-Za-z_]\w*)\s*(?:\[(.*?)\]\s*)?([=:])\s*(.*?)\s*")
 _DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d+\s*")
 
 
@@ -130,11 +131,13 @@ def _preamble(lines: Sequence[str], skip: int) -> tuple[int, dict[str, float]]:
 
 
 def _add_condition(line: str, conditions: dict[str, float]) -> None:
-    """Add what a line such as `# payload = 0.3 kg` states; other remarks are none of our business."""
+    """Add what a line such as `# payload = 0.3 kg` or `# payload [kg]: 0.3` states; other remarks are none of our business."""
     match = _CONDITION.fullmatch(line)
     if match is None:
         return
-    name, text = match[1], match[2]
+    name, text = match[1], f"{match[4]} {match[2] or ''}".strip()
+    if match[3] == ":" and name not in CONDITIONS:
+        return
     if name in conditions:
         raise InputError(f"condition '{name}' comes twice; keep one of the two")
     if name in CONDITIONS:
@@ -142,7 +145,8 @@ def _add_condition(line: str, conditions: dict[str, float]) -> None:
     elif difflib.get_close_matches(name.lower(), CONDITIONS, cutoff=0.8):
         raise InputError(f"unknown condition {shown(name)}{did_you_mean(name.lower(), CONDITIONS)}")
     elif units.is_quantity(text):
-        conditions[name] = units.base_value(text)
+        with contextlib.suppress(InputError):  # "# trial = 3 good" is a remark
+            conditions[name] = units.base_value(text)
 
 
 def _header(lines: Sequence[str], first: int, layout: ColumnMap) -> tuple[list[str], int]:
@@ -238,7 +242,7 @@ def _numbers(rows: list[str], lines: Sequence[int], labels: dict[int, str], widt
     even = delimiter == " " or all(row.count(delimiter) == width - 1 for row in rows)
     if even and max(labels) < width:
         try:
-            return np.loadtxt(
+            read = np.loadtxt(
                 rows if layout.decimal == "." else [_point(row, layout.decimal) for row in rows],
                 delimiter=None if delimiter == " " else delimiter,
                 comments=None,
@@ -246,6 +250,8 @@ def _numbers(rows: list[str], lines: Sequence[int], labels: dict[int, str], widt
                 usecols=list(labels),
                 ndmin=2,
             )
+            if len(read) == len(rows):  # fewer where a quote that opens in one row closes in another
+                return read
         except ValueError:
             pass
     return np.array(list(_slowly(rows, lines, labels, width, layout)), dtype=np.float64)

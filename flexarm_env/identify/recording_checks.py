@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,6 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 from flexarm_env.errors import InputError
 
 Floats = NDArray[np.float64]
+
+#: No arm reads or is sent more than this, in SI.
+LARGEST_READING = 1e7
+#: A step of time is no longer than so many median steps, since nothing is known of what was sent meanwhile, and the median
+#: no shorter than this [s].
+LONGEST_STEP, SHORTEST_STEP = 10_000, 1e-7
 
 
 def as_vector(name: str, values: ArrayLike) -> Floats:
@@ -34,6 +40,10 @@ def check_samples(arrays: Mapping[str, Floats], lines: Sequence[int]) -> None:
         bad = np.flatnonzero(~np.isfinite(values))
         if bad.size:
             raise InputError(f"{place(bad[0])}, column '{column}': is {values[bad[0]]}; correct it or remove the row")
+        large = np.flatnonzero(np.abs(values) > LARGEST_READING)
+        if large.size and column != "time":
+            value = f"{values[large[0]]:g} in SI units, over {LARGEST_READING:g}"
+            raise InputError(f"{place(large[0])}, column '{column}': is {value}; is the unit right?")
     time = arrays["time"]
     back = np.flatnonzero(np.diff(time) <= 0)
     if back.size:
@@ -42,6 +52,21 @@ def check_samples(arrays: Mapping[str, Floats], lines: Sequence[int]) -> None:
         raise InputError(
             f"{place(i + 1)}, column 'time': {what}, {time[i + 1]:.9g} s after {time[i]:.9g} s"
             " (from the first sample); sort the rows and remove repeated ones"
+        )
+    _check_steps(np.diff(time), place)
+
+
+def _check_steps(steps: Floats, place: Callable[[int], str]) -> None:
+    if not steps.size:
+        return
+    usual = float(np.median(steps))
+    if usual < SHORTEST_STEP:
+        raise InputError(f"column 'time': samples are {usual:.3g} s apart, less than {SHORTEST_STEP:g} s; is the unit right?")
+    i = int(steps.argmax())
+    if steps[i] > LONGEST_STEP * usual:
+        raise InputError(
+            f"{place(i + 1)}, column 'time': {steps[i]:.6g} s after the row before, where samples are {usual:.3g} s apart;"
+            " correct it, or cut the recording in two there"
         )
 
 

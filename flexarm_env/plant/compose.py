@@ -29,19 +29,11 @@ from typing import Any
 
 import numba
 
+from flexarm_env.effects.base import PORT_ARGUMENTS
 from flexarm_env.files import write_whole
 
-#: Ports that are laws in the kernel: the arguments that each may name, and what its switch returns by default.
-PORTS: dict[str, tuple[tuple[str, ...], str]] = {
-    "friction": (("direction", "speed", "angle", "time", "load", "at_rest"), "0.0"),
-    "factor": (("angle", "time"), "1.0"),
-    "presliding": (("before", "travel", "level"), "level"),
-    "torque": (("angle", "speed", "time"), "0.0"),
-    "weight": (("angle",), "0.0"),
-    "drag": (("velocity",), "0.0"),
-    "drive": (("command", "previous", "interval"), "command"),
-    "sensor": (("reading", "angle", "motor_angle", "time"), "reading"),
-}
+#: What a port's switch returns where no law is active.
+DEFAULTS = {"factor": "1.0", "presliding": "level", "drive": "command", "sensor": "reading"}
 
 #: What the kernels' annotations stand for. Without a signature numba compiles a kernel for every literal it is given.
 TYPES = {
@@ -111,7 +103,7 @@ def _law_source(name: str, function: Callable[..., float]) -> str:
 
 
 def _switch(port: str, laws: Sequence[Law]) -> str:
-    given, default = PORTS[port]
+    given, default = PORT_ARGUMENTS[port], DEFAULTS.get(port, "0.0")
     typed = ", ".join(f"{name}: {'bool' if name == 'at_rest' else 'float'}" for name in given)
     lines = [f"@njit\ndef {port}_law(kind: int, {typed}, d: Numbers, k: int):"]
     sources = []
@@ -187,7 +179,7 @@ def source_of(laws: Sequence[Law]) -> str:
     here = Path(__file__).parent
     imports = ["import math", "import numpy as np", "from numba import boolean, float64, int64, njit, uint64"]
     parts = [*imports, _plain(here / "layout.py")]
-    parts += [_switch(port, laws) for port in PORTS]
+    parts += [_switch(port, laws) for port in PORT_ARGUMENTS]
     parts += [_plain(here / file) for file in FILES]
     text = "\n\n".join(parts) + "\n"
     return text

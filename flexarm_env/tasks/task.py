@@ -14,6 +14,13 @@ REWARD_TERMS = ("distance", "closeness", "vibration", "effort", "rate", "failure
 #: What a term is multiplied by, where a task does not say otherwise.
 WEIGHTS = {"distance": 1.0, "closeness": 0.5, "vibration": 2.0, "effort": 0.02, "rate": 0.02, "failure": 100.0}
 
+#: Smallest value of each number of a task, and the largest of all.
+LARGEST = 1e6
+LEAST = {
+    **{"duration": 1e-6, "half_period": 0.0, "pulse_time": 0.0, "coast": 0.0, "range": 1e-6},
+    **{"target": -LARGEST, "angle": -LARGEST, "pulse": -LARGEST},
+}
+
 
 @dataclass(frozen=True)
 class Task:
@@ -53,5 +60,10 @@ class Task:
         for name in self.weights:
             if name not in REWARD_TERMS:
                 raise InputError(f"task '{self.name}': unknown reward term '{name}'{did_you_mean(name, REWARD_TERMS)}")
-        if not (math.isfinite(self.duration) and self.duration > 0.0):
-            raise InputError(f"task '{self.name}': duration = {self.duration:g} s; give a positive number")
+        for name, lowest in LEAST.items():
+            value = getattr(self, name)
+            if not lowest <= value <= LARGEST:
+                raise InputError(f"task '{self.name}': {name} = {value!r}; give a number from {lowest:g} to {LARGEST:g}")
+        for name, weight in self.weights.items():
+            if not math.isfinite(weight):
+                raise InputError(f"task '{self.name}': the weight of {name} is {weight!r}; give a finite number")

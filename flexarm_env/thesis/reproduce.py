@@ -120,7 +120,7 @@ def _make(folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot make folder {folder}: {error.strerror}; name another with --output") from None
-    outputs.check_place(folder / PAGE, folder / NUMBERS)
+    outputs.check_places(None, folder / PAGE, folder / NUMBERS)
 
 
 def _say(output: Path, claims: Sequence[Claim], found: Sequence[Erratum], json: Path | None) -> None:

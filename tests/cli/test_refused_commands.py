@@ -2,12 +2,39 @@
 
 from __future__ import annotations
 
+import os
+
 import numpy as np
 import pytest
-from cli_stand_ins import OWN
+from cli_stand_ins import GOOD_ARM, OWN
 
 import flexarm_env
 from flexarm_env.errors import InputError
+
+MAP = """
+[columns]
+time = {index = 0, unit = 's'}
+current = {index = 1, unit = 'A'}
+arm_angle = {index = 2, unit = 'rad'}
+"""
+SIZE = '{"size": Parameter("N*m/rad", 0.0, 1.0, 0.1, null=0.0)}'
+PORT = """    @staticmethod
+    def torque(angle, size):
+        return -size * angle
+"""
+WHOLE = f"""
+import math
+from flexarm_env.effects import Effect
+from flexarm_env.parameters import Parameter
+
+
+class Mine(Effect):
+    name = "mine"
+    equation = "τ = -k θ"
+    parameters = {SIZE}
+    looks_like = "a spring"
+
+{PORT}"""
 
 
 @pytest.mark.parametrize(
@@ -41,6 +68,70 @@ def test_places_that_cannot_be_written_are_refused_before_the_work(flexarm, iden
     for place in (tmp_path, tmp_path / "no" / "x", tmp_path / "file" / "x"):
         assert "cannot write" in flexarm.refused("diagnose", runs, option, place)
     assert identify.log == []
+
+
+def test_nothing_that_is_read_or_written_is_written_over(flexarm, identify, runs, tmp_path):
+    one, other = runs / "pulse.csv", tmp_path / "out.toml"
+    before = one.read_bytes()
+    (tmp_path / "link.json").symlink_to(one)
+    for words in (
+        ["compare", one, "--json", one],
+        ["compare", runs, "--json", one],
+        ["compare", one, "--json", tmp_path / "link.json"],
+        ["diagnose", one, "--save", one],
+        ["diagnose", one, "--save", other, "--json", other],
+        ["simulate", "--input", one, "--save", one],
+        ["simulate", "--save", tmp_path / "a.csv", "--json", tmp_path / "a.csv"],
+    ):
+        assert "already" in flexarm.refused(*words)
+    assert "stdout" in flexarm.refused("simulate", "--save", "-")
+    assert one.read_bytes() == before
+    assert identify.log == []
+
+
+def test_an_arm_may_be_saved_in_its_own_file(flexarm, identify, runs, tmp_path):
+    arm = tmp_path / "arm.toml"
+    arm.write_text(GOOD_ARM)
+    assert flexarm("fit", runs, "--arm", arm, "--save", arm) == 0
+    assert "already" in flexarm.refused("fit", runs, "--arm", arm, "--json", arm)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
+def test_pipes_are_refused_and_not_waited_for(flexarm, runs, tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "arm.toml").write_text(GOOD_ARM + MAP)
+    for words in (
+        ["compare", tmp_path / "pipe", "--arm", tmp_path / "arm.toml"],
+        ["compare", runs, "--columns", tmp_path / "pipe"],
+        ["effects", "coulomb", "--json", tmp_path / "pipe"],
+    ):
+        assert "regular file" in flexarm.refused(*words)
+    assert "neither a file" in flexarm.refused("compare", runs, "--arm", tmp_path / "pipe")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("import math", "import sys\nsys.exit(0)", "SystemExit"),
+        ('name = "mine"', 'name = "my-effect"', "letters, digits and _"),
+        ('name = "mine"', "name = 5", "letters, digits and _"),
+        (SIZE, "{}", "one Parameter at least"),
+        (SIZE, '{"size": 0.1}', "write Parameter"),
+        (SIZE, SIZE.replace("N*m/rad", "furlungs"), "unknown unit 'furlungs'"),
+        ("def torque(angle, size)", "def torque(hub_angle, size)", "did you mean 'angle'"),
+        (PORT, "    torque = lambda angle, size: 0.0", "def"),
+    ],
+)
+def test_an_effect_that_is_not_whole_is_refused(flexarm, runs, tmp_path, old, new, words):
+    assert old in WHOLE
+    (tmp_path / "mine.py").write_text(WHOLE.replace(old, new))
+    assert words in flexarm.refused("compare", runs, "--effects", f"{tmp_path / 'mine.py'}:Mine")
+
+
+def test_an_effect_without_a_docstring_has_a_page(flexarm, tmp_path):
+    (tmp_path / "mine.py").write_text(WHOLE)
+    assert flexarm("effects", f"{tmp_path / 'mine.py'}:Mine") == 0
+    assert "Mine" in flexarm.out
 
 
 def test_an_effect_that_cannot_be_added_is_refused(flexarm, identify, runs, tmp_path):

@@ -77,6 +77,12 @@ def test_recordings_that_are_no_files_get_one_line(flexarm, tmp_path):
         ("gear_ratio = 1.5", "gear_ratio = = 1.5", "TOML"),
         (GOOD_ARM, "", "missing"),
         (GOOD_ARM, "\0", "TOML"),
+        (GOOD_ARM, "x = " + "[" * 20_000, "nested"),
+        ("gear_ratio = 1.5", f"gear_ratio = {10**400}", "out of bounds"),
+        ("gear_ratio = 1.5", f"gear_ratio = {'1' * 5000}", "TOML"),
+        ("gear_ratio = 1.5", 'gear_ratio = 1.5\ninput = ["current"]', "input"),
+        ("[drive]", "columns = 5\n[drive]", "columns is not a table"),
+        ("[drive]", "fitted = 5\n[drive]", "fitted is not a table"),
     ],
 )
 def test_a_bad_arm_file_gets_one_line(flexarm, runs, tmp_path, old, new, words):
@@ -98,7 +104,7 @@ def test_an_arm_that_is_no_file_gets_one_line(flexarm, runs, tmp_path):
 
 
 def test_a_good_arm_file_is_taken(flexarm, identify, runs, tmp_path):
-    (tmp_path / "arm.toml").write_text(GOOD_ARM)
+    (tmp_path / "arm.toml").write_text("\ufeff" + GOOD_ARM)  # as some editors save it
     assert flexarm("compare", runs, "--arm", tmp_path / "arm.toml") == 0
 
 

@@ -15,7 +15,9 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
 import flexarm_env
 from flexarm_env import Arm, InputError
+from flexarm_env.env import kernel as at
 from flexarm_env.env import pages
+from flexarm_env.env.flexarm import FlexArmEnv
 from flexarm_env.registration import ENVIRONMENTS, VARIANTS
 
 IDS = [f"FlexArm/{name}{variant}-v0" for name in ENVIRONMENTS for variant in VARIANTS]
@@ -140,6 +142,15 @@ def make(**arguments: object) -> gym.Env:
         ({"disturb": 3}, ["disturb = 3"]),
         ({"disturb": {"tap_rate": "often"}}, ["tap_rate", "often"]),
         ({"task": "track"}, ["task", "slew"]),
+        ({"randomise": {"drive.limit": (1.0, 2.0)}}, ["drive.limit", "arm file"]),
+        ({"randomise": {5: (1.0, 2.0)}}, ["5", "no path"]),
+        ({"randomise": {"payload.mass": (0.0, 0.1), "effects.payload.mass": (0.0, 0.2)}}, ["payload.mass", "twice"]),
+        ({"randomise": {"sensors.strain_mid.position": (0.5, 6.0)}}, ["strain_mid", "6 m", "1 m"]),
+        ({"randomise": {"beam.length": (0.3, 0.9)}}, ["strain_mid", "0.3 m"]),
+        ({"disturb": {5: 1.0}}, ["5", "tap_rate"]),
+        ({"disturb": {"tap_time": 1e308}}, ["tap_time", "1e+308"]),
+        ({"physical": "False"}, ["physical", "True or False"]),
+        ({"control_rate": True}, ["control_rate", "True"]),
     ],
 )
 def test_bad_arguments_give_one_clear_line(arguments: dict, words: list[str]) -> None:
@@ -149,6 +160,25 @@ def test_bad_arguments_give_one_clear_line(arguments: dict, words: list[str]) ->
     assert "\n" not in message
     for word in words:
         assert word in message
+
+
+@pytest.mark.parametrize("varied", [{}, {"drive.gear_ratio": (3.0, 3.0)}, {"drive.torque_constant": (0.2, 0.6)}])
+def test_a_tap_is_a_torque_on_the_hub_whatever_drive_was_drawn(varied: dict) -> None:
+    env = FlexArmEnv("slew", randomise=varied, disturb={"tap_rate": 200.0, "tap_torque": 5.0, "tap_time": 0.005})
+    env.reset(seed=3)
+    command, tap = env.batch.arena[env.batch.places[at.AT_PUSHES]], env.batch.own[0, at.TAP]
+    drive = env.drawn_arm().constants["drive"]
+    assert abs(tap) > 0.1
+    assert command * drive["gear_ratio"] * drive["torque_constant"] == pytest.approx(tap)
+
+
+def test_the_cost_of_vibration_is_by_the_length_that_was_drawn() -> None:
+    env = FlexArmEnv("damp", randomise={"beam.length": (1.5, 2.0)})
+    env.reset(seed=0)
+    info = env.step(np.zeros(1))[4]
+    length = env.drawn_arm().constants["beam"]["length"]
+    assert 1.5 < length < 2.0
+    assert info["reward_vibration"] == pytest.approx(-env.setup.task.weights["vibration"] * abs(info["tip_deflection"]) / length)
 
 
 @pytest.mark.parametrize("action", [np.zeros(2), np.zeros((1, 1)), np.array(0.5), np.array([np.nan]), np.array([np.inf]), None])

@@ -15,6 +15,8 @@ from recording_files import GOOD, HEADER, refusal, save
 from flexarm_env.errors import InputError
 from flexarm_env.identify.recording import Recording
 
+# The first row before a clock was set, the others after.
+LATE_CLOCK = "\n".join([HEADER, "0,1,2", *(f"{1.7e9 + 0.1 * k:.1f},1,2" for k in range(5)), ""])
 # The text, and what the message must hold.
 BAD = {
     "empty": ("", ["empty"]),
@@ -76,6 +78,11 @@ BAD = {
     "condition, twice": ("# payload = 1 kg\n# payload = 2 kg\n" + GOOD, ["row 2", "twice"]),
     "condition, misspelt": ("# paylod = 1 kg\n" + GOOD, ["row 1", "did you mean 'payload'"]),
     "condition, negative": ("# payload = -1 kg\n" + GOOD, ["payload", "-1"]),
+    "a clock set after the first row": (LATE_CLOCK, ["row 3", "apart"]),
+    "no arm reads that": (GOOD.replace("0.6", "3e8"), ["row 3", "'arm_angle'", "unit"]),
+    "time in the wrong unit": (f"{HEADER}\n0,1,2\n5e-12,1,2\n1e-11,1,2\n", ["'time'", "5e-12 s apart", "unit"]),
+    "quote that closes in another row": (GOOD.replace("0.1,2,0.6", '0.1,"2,0.6').replace("0.2,3,", '0.2,3",'), ["row 3"]),
+    "condition, after a colon": ("# payload: 0.3 m\n" + GOOD, ["row 1", "kg"]),
     "one endless field": ('"' + "x" * 200_000, ["CSV"]),
 }
 

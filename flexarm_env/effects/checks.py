@@ -1,0 +1,46 @@
+"""Whether a class is an effect that an arm can have."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+
+from flexarm_env.effects.base import PORT_ARGUMENTS, Effect
+from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.parameters import Parameter
+from flexarm_env.units import check_unit
+
+
+def checked(effect: type[Effect]) -> type[Effect]:
+    """Return the effect if it is whole.
+
+    Raises:
+        InputError: for what it lacks, or what cannot be as it is.
+    """
+    where = f"effect {effect.__name__}"
+    for attribute in ("name", "equation", "parameters", "looks_like"):
+        if not hasattr(effect, attribute):
+            raise InputError(f"{where} lacks '{attribute}'")
+    if not isinstance(effect.name, str) or not (effect.name.isidentifier() and effect.name.isascii()):
+        raise InputError(f"{where}: name is {effect.name!r}; write it in letters, digits and _")
+    if not isinstance(effect.parameters, Mapping) or not effect.parameters:
+        raise InputError(f"{where}: parameters is {effect.parameters!r}; give a dict with one Parameter at least")
+    for key, parameter in effect.parameters.items():
+        if not isinstance(parameter, Parameter):
+            raise InputError(f"{where}: parameters['{key}'] is {parameter!r}; write Parameter(unit, low, high, typical)")
+        if parameter.unit:
+            check_unit(parameter.unit)
+    ports = {port: function for port in ("structure", *PORT_ARGUMENTS) if (function := effect.port(port))}
+    if not ports:
+        raise InputError(f"{where} has no port: give it one of structure, {', '.join(PORT_ARGUMENTS)}")
+    for port, function in ports.items():
+        _check_port(f"{where}: {port}", function, (*PORT_ARGUMENTS.get(port, ("structure",)), *effect.parameters))
+    return effect
+
+
+def _check_port(where: str, function: Callable[..., float], allowed: tuple[str, ...]) -> None:
+    if not inspect.isfunction(function) or function.__name__ == "<lambda>":
+        raise InputError(f"{where} is no function of its own; write it with @staticmethod and def")
+    for name in inspect.signature(function).parameters:
+        if name not in allowed:
+            raise InputError(f"{where} takes '{name}'{did_you_mean(name, allowed)}")
