@@ -100,6 +100,8 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         Raises:
             InputError: for seeds or a mask of another length.
         """
+        if not isinstance(options, dict | None):
+            raise InputError(f'options = {options!r}; give a dict such as {{"reset_mask": mask}}, or None')
         seeds = self._seeds(seed)
         mask = (options or {}).get("reset_mask", self.all)
         if np.shape(mask) != (self.num_envs,) or np.asarray(mask).dtype != bool:
@@ -120,6 +122,8 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         if isinstance(seed, int | np.integer):
             self._np_random, self._np_random_seed = gym.utils.seeding.np_random(int(seed))
             return [int(seed) + i for i in range(self.num_envs)]
+        if not isinstance(seed, Sequence | np.ndarray) or not all(s is None or isinstance(s, int | np.integer) for s in seed):
+            raise InputError(f"seed = {seed!r}; give a whole number, or one for each arm")
         if len(seed) != self.num_envs:
             raise InputError(f"{len(seed)} seeds for {self.num_envs} arms; give one for each, or one number")
         return list(seed)

@@ -162,6 +162,22 @@ def test_bad_arguments_give_one_clear_line(arguments: dict, words: list[str]) ->
         assert word in message
 
 
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"seed": 1.5}, "whole number"),
+        ({"seed": [1, "a"]}, "whole number"),
+        ({"seed": [1, 2, 3]}, "3 seeds for 2 arms"),
+        ({"options": "abc"}, "reset_mask"),
+        ({"options": {"reset_mask": [True]}}, "2 booleans"),
+    ],
+)
+def test_bad_resets_of_many_arms_give_one_clear_line(arguments: dict, words: str) -> None:
+    envs = gym.make_vec("FlexArm/Slew-v0", 2, vectorization_mode="vector_entry_point")
+    with pytest.raises(InputError, match=words):
+        envs.reset(**arguments)
+
+
 @pytest.mark.parametrize("varied", [{}, {"drive.gear_ratio": (3.0, 3.0)}, {"drive.torque_constant": (0.2, 0.6)}])
 def test_a_tap_is_a_torque_on_the_hub_whatever_drive_was_drawn(varied: dict) -> None:
     env = FlexArmEnv("slew", randomise=varied, disturb={"tap_rate": 200.0, "tap_torque": 5.0, "tap_time": 0.005})
