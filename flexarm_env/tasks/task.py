@@ -17,8 +17,14 @@ WEIGHTS = {"distance": 1.0, "closeness": 0.5, "vibration": 2.0, "effort": 0.02, 
 #: Smallest value of each number of a task, and the largest of all.
 LARGEST = 1e6
 LEAST = {
-    **{"duration": 1e-6, "half_period": 0.0, "pulse_time": 0.0, "coast": 0.0, "range": 1e-6},
-    **{"target": -LARGEST, "angle": -LARGEST, "pulse": -LARGEST},
+    "duration": 1e-6,
+    "half_period": 0.0,
+    "pulse_time": 0.0,
+    "coast": 0.0,
+    "range": 1e-6,
+    "target": -LARGEST,
+    "angle": -LARGEST,
+    "pulse": -LARGEST,
 }
 
 

@@ -17,10 +17,11 @@ import pytest
 
 from flexarm_env.arm import Arm
 from flexarm_env.effects import Effect, catalogue
+from flexarm_env.effects.base import PORT_ARGUMENTS
 from flexarm_env.effects.catalogue import LAW_PORTS, load_effect
 from flexarm_env.errors import InputError
 from flexarm_env.identify.simulate import simulate
-from flexarm_env.plant.compose import PORTS, compose
+from flexarm_env.plant.compose import compose
 from flexarm_env.signals import INPUTS, SIGNALS
 from flexarm_env.units import factor
 
@@ -111,7 +112,7 @@ def test_its_ports_take_its_parameters_and_what_the_port_gives(name):
     ports = [port for port in ("structure", *LAW_PORTS) if effect.port(port) is not None]
     assert ports
     for port in ports:
-        given = ("structure",) if port == "structure" else PORTS[port][0]
+        given = ("structure",) if port == "structure" else PORT_ARGUMENTS[port]
         wanted = inspect.signature(effect.port(port)).parameters
         assert set(wanted) <= {*given, *effect.parameters}
         assert not set(given) & set(effect.parameters), "a parameter hides what the port gives"
@@ -140,7 +141,7 @@ def test_it_changes_what_is_measured(arm, name):
 def jitted_law(port: str) -> Callable[..., float]:
     """The kernel's switch over the laws of a port. Only compiled code can call it, so it gets a caller."""
     scope = {"law": getattr(compose(catalogue().laws), f"{port}_law")}
-    arguments = ", ".join(("kind", *PORTS[port][0], "d", "k"))
+    arguments = ", ".join(("kind", *PORT_ARGUMENTS[port], "d", "k"))
     exec(f"def call({arguments}): return law({arguments})", scope)
     return numba.njit(scope["call"])
 
@@ -152,8 +153,8 @@ def test_jitted_equals_python(name, port):
     for share in SIZES:
         values = sized(effect, share)
         data = np.array(list(values.values()))
-        for point in itertools.product(*(GRID[quantity] for quantity in PORTS[port][0])):
-            given = dict(zip(PORTS[port][0], point, strict=True))
+        for point in itertools.product(*(GRID[quantity] for quantity in PORT_ARGUMENTS[port])):
+            given = dict(zip(PORT_ARGUMENTS[port], point, strict=True))
             expected = python(**{a: (given | values)[a] for a in inspect.signature(python).parameters})
             assert jitted(kind, *point, data, 0) == pytest.approx(expected, rel=1e-14, abs=1e-300)
 
