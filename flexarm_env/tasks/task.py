@@ -14,7 +14,7 @@ REWARD_TERMS = ("distance", "closeness", "vibration", "effort", "rate", "failure
 #: What a term is multiplied by, where a task does not say otherwise.
 WEIGHTS = {"distance": 1.0, "closeness": 0.5, "vibration": 2.0, "effort": 0.02, "rate": 0.02, "failure": 100.0}
 
-#: Smallest value of each number of a task, and the largest of all.
+#: Smallest value of each number of a task, and the largest of all but the range.
 LARGEST = 1e6
 LEAST = {
     "duration": 1e-6,
@@ -46,7 +46,7 @@ class Task:
         pulse_time: how long it acts [s].
         coast: how long the arm then runs on before the episode starts [s].
         hold: whether the target is the angle where the episode starts.
-        range: the episode ends where the angle is further from its start than this [rad].
+        range: the episode ends where the angle is further from its start than this [rad]; infinity: never.
         weights: of the reward's terms.
     """
 
@@ -67,9 +67,9 @@ class Task:
             if name not in REWARD_TERMS:
                 raise InputError(f"task '{self.name}': unknown reward term '{name}'{did_you_mean(name, REWARD_TERMS)}")
         for name, lowest in LEAST.items():
-            value = getattr(self, name)
-            if not lowest <= value <= LARGEST:
-                raise InputError(f"task '{self.name}': {name} = {value!r}; give a number from {lowest:g} to {LARGEST:g}")
+            value, highest = getattr(self, name), math.inf if name == "range" else LARGEST
+            if not lowest <= value <= highest:
+                raise InputError(f"task '{self.name}': {name} = {value!r}; give a number from {lowest:g} to {highest:g}")
         for name, weight in self.weights.items():
             if not math.isfinite(weight):
                 raise InputError(f"task '{self.name}': the weight of {name} is {weight!r}; give a finite number")

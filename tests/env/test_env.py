@@ -19,6 +19,7 @@ from flexarm_env.env import kernel as at
 from flexarm_env.env import pages
 from flexarm_env.env.flexarm import FlexArmEnv
 from flexarm_env.registration import ENVIRONMENTS, VARIANTS
+from flexarm_env.tasks import Task
 
 IDS = [f"FlexArm/{name}{variant}-v0" for name in ENVIRONMENTS for variant in VARIANTS]
 MODES = [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP]
@@ -176,6 +177,23 @@ def test_bad_resets_of_many_arms_give_one_clear_line(arguments: dict, words: str
     envs = gym.make_vec("FlexArm/Slew-v0", 2, vectorization_mode="vector_entry_point")
     with pytest.raises(InputError, match=words):
         envs.reset(**arguments)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "words"),
+    [
+        ({"duration": 0.0}, "duration = 0.0"),
+        ({"duration": 1e308}, "duration = 1e"),
+        ({"duration": 5.0, "target": float("nan")}, "target = nan"),
+        ({"duration": 5.0, "pulse_time": -1.0}, "pulse_time = -1.0"),
+        ({"duration": 5.0, "weights": {"effort": float("inf")}}, "weight of effort"),
+        ({"duration": 5.0, "weights": {"efort": 1.0}}, "did you mean 'effort'"),
+    ],
+)
+def test_bad_tasks_give_one_clear_line(numbers: dict, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        Task("mine", **numbers)
+    assert Task("mine", 5.0, range=float("inf")).range == float("inf")
 
 
 @pytest.mark.parametrize("varied", [{}, {"drive.gear_ratio": (3.0, 3.0)}, {"drive.torque_constant": (0.2, 0.6)}])
