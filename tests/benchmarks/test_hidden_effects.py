@@ -85,6 +85,17 @@ def test_the_table_counts_what_was_answered(tmp_path):
     assert json.loads((tmp_path / "table.json").read_text())["cases"] == len(answers)
 
 
+def test_an_exact_twin_is_as_good_in_its_own_line_only():
+    late = next(c for c in cases(1) if c.effects == ("time_offset",) and c.strength == 3.0)
+    pair = next(c for c in cases(1) if c.kind == "two" and "dead_zone" in c.effects)
+    twins = [name.replace("dead_zone", "brush_drop") for name in pair.effects]
+    found = {f.what: f.value for f in figures([answer(late, ["input_delay"]), answer(pair, twins)])}
+    assert found["right effect first, strength 3"] == found["two effects, both right, strength 3"] == 0.0
+    assert found["right effect or its exact twin first, strength 3"] == 1.0
+    assert found["two effects, both right or exact twins, strength 3"] == 1.0
+    assert found["sensor against plant side"] == 0.0
+
+
 def test_a_stopped_run_goes_on(tmp_path):
     chosen = cases(1)[:2]
     calls = []
