@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import re
 import sys
+import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +17,7 @@ import pytest
 from documents import PROJECT, README
 
 RESULTS = PROJECT / "results"
+HIDDEN = RESULTS / "hidden_effects" / "diagnose-4"
 
 
 def demo_table(numbers: str) -> str:
@@ -61,6 +63,29 @@ def baselines_table(numbers: str) -> str:
     return f"{words}\n\n{summary_of(result)}"
 
 
+def hidden_effects_words(numbers: str) -> str:
+    """What README.md says of the benchmark of hidden effects, from the numbers in its table.json."""
+    results = json.loads(numbers)
+    share = {figure["what"]: f"{100.0 * figure['value']:.0f} %" for figure in results["figures"]}
+    one, two = share["right effect first, strength 3"], share["two effects, both right, strength 3"]
+    like_one = share["right effect or its exact twin first, strength 3"]
+    like_two = share["two effects, both right or exact twins, strength 3"]
+    words = (
+        f"[The benchmark](docs/hidden-effects.md) has {results['cases']} machines of that simulator, with something hidden or"
+        f" nothing. `diagnose` names the right effect first in {one} where it leaves an error of three times the noise, and both"
+        f" of two in {two} ({like_one} and {like_two} if effects that are the same motion count as one). It cries wolf on"
+        f" {share['false alarm on nulls']} of the machines that lack nothing, and calls"
+        f" {share['outside the catalogue: flagged']} of what no catalogue holds unknown."
+    )
+    filled = textwrap.fill(words.replace(" %", "\xa0%"), 124, break_long_words=False, break_on_hyphens=False)
+    return filled.replace("\xa0", " ") + "\n"
+
+
+def hidden_effects_table(written: str) -> str:
+    """The benchmark's table, without its heading."""
+    return written.split("\n", 2)[2]
+
+
 @dataclass(frozen=True)
 class Table:
     """A table of a document: its name in the comments, the numbers it is made of, and how."""
@@ -82,10 +107,12 @@ class Table:
 TABLES = (
     Table("demo", README, RESULTS / "demo" / "demo.json", demo_table),
     Table("baselines", README, RESULTS / "baselines" / "baselines.json", baselines_table),
+    Table("hidden-effects", README, HIDDEN / "table.json", hidden_effects_words),
+    Table("hidden-effects", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.md", hidden_effects_table),
 )
 
 
-@pytest.mark.parametrize("table", TABLES, ids=lambda table: table.name)
+@pytest.mark.parametrize("table", TABLES, ids=lambda table: f"{table.name}-{table.document.stem}")
 def test_documents_have_the_numbers_of_the_results(table):
     (written,) = table.place.findall(table.document.read_text(encoding="utf-8"))
     assert written == table.text, f"{table.document.name} is not of {table.numbers.name}; write it anew: python {__file__}"

@@ -20,8 +20,7 @@ from benchmarks.hidden_effects.run import by_diagnosis, run  # noqa: E402
 
 METHODS = {
     "diagnose": by_diagnosis,
-    "best-fit": baselines.best_fit_wins,
-    "bic": baselines.stepwise_bic,
+    "bic": baselines.stepwise,
     "sindy": sindy.sindy_on_residuals,
 }
 RESULTS = Path(__file__).resolve().parents[2] / "results" / "hidden_effects"
@@ -61,12 +60,24 @@ def main() -> None:
         said = ", ".join(found["effects"]) or found["verdict"]
         say(f"{count} of {len(chosen)}  {case['name']}: {said}, error {found['error']['final']:.2f}")
 
-    folder = asked.output / f"{asked.method}-{asked.seed}"
-    answers = run(chosen, METHODS[asked.method], folder / "answers", asked.jobs, answered)
+    answers = run(chosen, METHODS[asked.method], _folder(asked, asked.method) / "answers", asked.jobs, answered)
     if asked.only == "*":
-        command = f"python -m benchmarks.hidden_effects --method {asked.method} --seed {asked.seed}"
-        for figure in table.write(folder, answers, asked.method, asked.seed, command):
-            print(f"{figure.what:50} {figure.goal:>12}  {figure.text:>16}  {'met' if figure.met else 'missed'}")
+        _write(asked, asked.method, answers)
+        if asked.method == "bic":
+            _write(asked, "best-fit", [baselines.best_fit_wins(answer) for answer in answers])
+
+
+def _folder(asked: argparse.Namespace, method: str) -> Path:
+    output: Path = asked.output
+    return output / f"{method}-{asked.seed}"
+
+
+def _write(asked: argparse.Namespace, method: str, answers: list[dict[str, Any]]) -> None:
+    """Write a method's table, and print it."""
+    command = f"python -m benchmarks.hidden_effects --method {asked.method} --seed {asked.seed}"
+    print(method)
+    for figure in table.write(_folder(asked, method), answers, method, asked.seed, command):
+        print(f"{figure.what:50} {figure.goal:>12}  {figure.text:>16}  {'met' if figure.met else 'missed'}")
 
 
 if __name__ == "__main__":

@@ -42,7 +42,7 @@ class Figure:
     def text(self) -> str:
         """The value with its unit and the number of cases."""
         if self.unit == "%":
-            return f"{100.0 * self.value:.0f} % of {self.count}"
+            return f"{100.0 * self.value:.1f} % of {self.count}"
         return f"{self.value:.3g}{' ' + self.unit if self.unit else ''} ({self.count})"
 
 
