@@ -20,7 +20,7 @@ class GearCompliance(Effect):
         "damping_time": Parameter("s", 1e-6, 1.0, 5e-4, meaning="T, damping of the windup over k"),
     }
     looks_like = "motor speed leads the arm by a fast vibration of its own"
-    confused_with = ("backlash", "root_compliance", "higher_modes")
+    confused_with = ("backlash", "beam_damping", "root_compliance", "higher_modes")
     source = "Spong, J. Dyn. Syst. Meas. Control 109 (1987) 310"
     needs = ("motor_speed", "motor_inertia", "hub_inertia")
 

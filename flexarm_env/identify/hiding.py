@@ -97,7 +97,7 @@ class _Tried:
     @property
     def values(self) -> dict[str, float]:
         """Parameters at the present size; one whose absence is infinity is the stronger the smaller it is."""
-        return sized(self.base, self.name, self.start, self.multiple)
+        return sized(self.base.problem.arm, self.name, self.start, self.multiple)
 
     @property
     def value(self) -> float:

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from flexarm_env.arm import Arm
 from flexarm_env.identify.data import Data
 from flexarm_env.identify.problem import Score, score
-from flexarm_env.identify.refit import FAR_OFF, NEAR, Refit, or_from_nominal, refit
-from flexarm_env.identify.screen import Base, Trial, attempt, screening_base, signatures
+from flexarm_env.identify.refit import FAR_OFF, NEAR, Refit, as_it_is, or_from_nominal, refit
+from flexarm_env.identify.screen import Base, Trial, attempt, first_start, screening_base, signatures
 
 #: A brief fit is one at this level, of so many iterations.
 BRIEF_LEVEL, BRIEF_ITERATIONS = 0.003, 2
@@ -77,6 +77,13 @@ def fit_hypothesis(effects: tuple[str, ...], arm: Arm, nominal: Arm, data: Data,
     if thorough:
         found = or_from_nominal(found, nominal, data)
     return judged(effects, found, data)
+
+
+def fit_from_signature(effect: str, without: Arm, nominal: Arm, data: Data) -> Hypothesis:
+    """Return an arm refitted with an effect, started where it explains most of what the arm leaves."""
+    found = signatures(screening_base(as_it_is(without, data), data), effect)
+    start = found[0].start if found else first_start(without, effect, data.scales)
+    return fit_hypothesis((effect,), without.with_effect(effect, **start), nominal, data, thorough=False)
 
 
 def asks_for_offset(found: Refit, data: Data) -> float:

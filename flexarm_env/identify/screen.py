@@ -109,7 +109,7 @@ def signatures(base: Base, effect: str) -> list[Signature]:
     """
     starts = starts_of(base, effect)
     if len(starts) <= FEW and base.problem.arm.known[effect].fitted:
-        starts += [sized(base, effect, starts[0], share) for share in SMALL]
+        starts += [sized(base.problem.arm, effect, starts[0], share) for share in SMALL]
     secants = sorted((_secant(base, effect, start) for start in starts), key=lambda s: -s.explained)
     best = max((_at_its_size(base, s) for s in secants[:STARTS_SCANNED]), key=lambda s: s.explained)
     return [best] if best.explained > LEAST_EXPLAINED else []
@@ -186,10 +186,10 @@ def _factors(base: Base, signature: Signature) -> tuple[float, ...]:
     return (*SIZES, *(-size for size in SIZES)) if parameter.low < 0.0 else SIZES
 
 
-def sized(base: Base, effect: str, start: Mapping[str, float], factor: float) -> dict[str, float]:
+def sized(arm: Arm, effect: str, start: Mapping[str, float], factor: float) -> dict[str, float]:
     """Return a start with its effect so many times as strong, within bounds; what is absent at infinity is divided."""
     values = dict(start)
-    for key, p in base.problem.arm.known[effect].parameters.items():
+    for key, p in arm.known[effect].parameters.items():
         if p.null is not None:
             value = values[key] / factor if p.null == math.inf else values[key] * factor
             values[key] = min(max(value, p.low), p.high)
@@ -197,7 +197,7 @@ def sized(base: Base, effect: str, start: Mapping[str, float], factor: float) ->
 
 
 def _at_size(base: Base, signature: Signature, factor: float) -> Signature:
-    values = sized(base, signature.effect, signature.start, factor)
+    values = sized(base.problem.arm, signature.effect, signature.start, factor)
     left = unexplained(base, base.problem.residual_of(base.problem.arm.with_effect(signature.effect, **values)))
     before = unexplained(base, base.residual)
     return Signature(signature.effect, values, 1.0 - float(left @ left) / float(before @ before))

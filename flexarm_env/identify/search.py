@@ -7,22 +7,22 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.acceptance import LEAST_GAIN, Acceptance, is_lost, stays_lost
+from flexarm_env.identify.acceptance import Acceptance, is_lost, stays_lost
 from flexarm_env.identify.data import Data
 from flexarm_env.identify.fits import Fits
 from flexarm_env.identify.hypothesis import (
     OFFSET,
     Hypothesis,
     at_bound,
-    criterion,
     excess,
     in_windows,
     judged,
 )
 from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.problem import Score, score
-from flexarm_env.identify.refit import FAR_OFF, NEAR, Progress, Refit, as_it_is, polish, refit, with_effects_of
-from flexarm_env.identify.screen import Trial, candidates
+from flexarm_env.identify.refit import FAR_OFF, Progress, Refit, as_it_is, polish, refit, with_effects_of
+from flexarm_env.identify.rivals import SAME_GAIN, in_place_of, order_of, same
+from flexarm_env.identify.screen import Trial
 
 #: How many candidates are refitted in full in each round, and only those that lower the cost of the screening to the first
 #: share, by no less than the second of what the best does.
@@ -31,12 +31,11 @@ LEAST_CHANGE, LEAST_OF_BEST = 0.97, 0.3
 #: Those that do this share of what the best does are refitted first, the others only if none of them is enough.
 NEAR_BEST = 0.6
 MOST_EFFECTS = 3
-#: Two effects are equivalent if the excess error that they leave differs by less than the first share of what they remove, and
-#: by less than one of them leaves, or the second, whichever is more.
-SAME_GAIN, SAME_EXCESS = 0.03, 0.1
 #: A refit of the constants that leaves less than the first share of the excess error is trusted as a start; one that
 #: leaves more than the second is not.
 REFIT_HELPS, REFIT_FAILS = 0.2, 0.7
+#: An error above this may be for a rival to remove.
+AT_NOISE = 1.01
 
 
 class Search:
@@ -60,9 +59,7 @@ class Search:
         while len(self.accepted) < MOST_EFFECTS and self._add_one(done, 0.3):
             done = min(done + 0.3, 0.7)
         self._drop_useless()
-        # Where much is missing still, no rival of an offset can be told from another.
-        if OFFSET in self.accepted and self.equivalent[self.accepted.index(OFFSET)] == [OFFSET] and self.best.windows <= FAR_OFF:
-            self._swap_offset()
+        self._swap()
 
     def open_hypotheses(self) -> dict[str, Arm]:
         """Return the arms between which the recordings do not decide, by effect; the arm that is left, where they do."""
@@ -130,13 +127,13 @@ class Search:
         if not self.rules.is_worth(self.best, winner.score, measure) or (self.accepted and stays_lost(winner.score, self.best)):
             return False
         rivals = self._rivals(winner, [h for h in found if len(h.effects) == len(winner.effects)], removed, measure)
-        winner, same = rivals[0], [h.effects[0] for h in rivals]
+        winner, alike = rivals[0], [h.effects[0] for h in rivals]
         with in_threads(self.jobs):
             refitted = polish(winner.refit, self.nominal, self.data)
         value = score(refitted.arm, self.data)
         for effect in winner.effects:
             self.accepted.append(effect)
-            self.equivalent.append(same if effect == winner.effects[0] else [effect])
+            self.equivalent.append(alike if effect == winner.effects[0] else [effect])
             self.steps[effect] = value
         self.found, self.best = refitted, value
         return True
@@ -153,17 +150,12 @@ class Search:
             return first
         arms = [with_effects_of(h.refit.arm, self.nominal) for h in first]
         again = self.fits.refit_all([h.effects for h in first], arms, 0.7, 0.05)
-        order = self._order(winner.score, measure)
+        order = order_of(winner.score, self.data, measure)
         better = [min(pair, key=order) for pair in zip(first, again, strict=True)]
         for hypothesis in better if len(winner.effects) == 1 else []:
             self._remember(hypothesis.effects[0], 1.0 - measure(hypothesis.score) / measure(self.best), hypothesis.refit)
         left = min(measure(h.score) for h in better)
-        same = [h for h in better if measure(h.score) <= left + min(SAME_GAIN * removed, max(left, SAME_EXCESS))]
-        return sorted(same, key=order)
-
-    def _order(self, best: Score, measure: Callable[[Score], float]) -> Callable[[Hypothesis], float]:
-        """Return what rivals are ordered by: all of the data where the best comes near the noise, else what was held out."""
-        return (lambda h: criterion(h, self.data)) if best.windows < NEAR[1] else (lambda h: measure(h.score))
+        return sorted([h for h in better if measure(h.score) <= left + same(removed, left)], key=order)
 
     def _go_on(self) -> None:
         """Refit once more without anything new: what that gains is no merit of another effect."""
@@ -207,28 +199,30 @@ class Search:
                 place = self.accepted.index(effect)
                 del self.accepted[place], self.equivalent[place], self.steps[effect]
 
-    def _swap_offset(self) -> None:
-        """Put what a constant torque is confused with in its place, which came in beside another effect, untried."""
-        place = self.accepted.index(OFFSET)
-        without = self.found.arm.without_effect(OFFSET)
-        lacking = candidates(without)
-        rivals = [(name,) for name in without.known[OFFSET].confused_with if name in lacking]
-        arms = [without.with_effect(name) for (name,) in rivals]
-        found = self.fits.refit_all(rivals, arms, 0.9, 0.05, thorough=False)
-        found = [h for h in found if not at_bound(h)]
-        measure = self.rules.measure_of([self.best, *(h.score for h in found)])
-        level = measure(self.best) + SAME_GAIN * (measure(self.first) - measure(self.best))
-        order = self._order(self.best, measure)
-        best = min(found, key=order, default=None)
-        same = [h.effects[0] for h in found if measure(h.score) <= level]
-        least = LEAST_GAIN if self.best.windows >= NEAR[1] else 0.0
-        if best is None or order(best) >= (1.0 - least) * order(judged(tuple(self.accepted), self.found, self.data)):
-            self.equivalent[place] += same
-            return
-        name = best.effects[0]
-        near = measure(best.score) + SAME_GAIN * (measure(self.first) - measure(best.score))
-        also = [OFFSET] if measure(self.best) <= near else []
-        self.found, self.best, self.accepted[place] = best.refit, best.score, name
-        self.equivalent[place] = [name, *also, *(other for other in same if other != name)]
+    def _swap(self) -> None:
+        """Put what an effect is confused with in its place, if that fits better beside everything else.
+
+        An effect that came in first was held against its rivals where others were missing still, and a constant torque that
+        came in beside another effect against none.
+        """
+        for place, effect in enumerate(list(self.accepted)):
+            if self.best.windows > FAR_OFF:  # so much is missing that no rival can be told from another
+                break
+            now = judged(tuple(self.accepted), self.found, self.data)
+            if effect == OFFSET or max(now.score.windows, now.fitted.windows) > AT_NOISE:
+                best, names = in_place_of(effect, now, self.fits, self.rules)
+                if best is now:
+                    self.equivalent[place] += [name for name in names if name not in self.equivalent[place]]
+                else:
+                    self._put(place, best, names)
+        self.equivalent = [[n for n in names if n == names[0] or n not in self.accepted] for names in self.equivalent]
+
+    def _put(self, place: int, best: Hypothesis, names: list[str]) -> None:
+        """Put an effect, the first of equivalent ones, in the place of another that it is better than."""
+        name, before = names[0], self.accepted[place]
+        gains = [self.ranking[n][0] for n in (name, before) if n in self.ranking]
+        self.ranking[name] = (max(gains, default=0.0), best.refit)
+        self.found, self.best = best.refit, best.score
+        self.accepted[place], self.equivalent[place] = name, names
+        del self.steps[before]
         self.steps[name] = best.score
-        del self.steps[OFFSET]

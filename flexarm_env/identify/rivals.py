@@ -1,0 +1,62 @@
+"""Which of the effects that look alike it is: they change places where one fits better beside everything else."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.acceptance import LEAST_GAIN, Acceptance
+from flexarm_env.identify.data import Data
+from flexarm_env.identify.fits import Fits
+from flexarm_env.identify.hypothesis import Hypothesis, at_bound, criterion, judged
+from flexarm_env.identify.least_squares import in_threads
+from flexarm_env.identify.problem import Score
+from flexarm_env.identify.refit import NEAR, polish
+from flexarm_env.identify.screen import candidates
+
+#: Two effects are equivalent if the excess error that they leave differs by less than the first share of what they remove, and
+#: by less than one of them leaves, or the second, whichever is more.
+SAME_GAIN, SAME_EXCESS = 0.03, 0.1
+
+
+def order_of(best: Score, data: Data, measure: Callable[[Score], float]) -> Callable[[Hypothesis], float]:
+    """Return what rivals are ordered by: all of the data where the best comes near the noise, else what was held out."""
+    return (lambda h: criterion(h, data)) if best.windows < NEAR[1] else (lambda h: measure(h.score))
+
+
+def same(removed: float, left: float) -> float:
+    """Return by how much the excess errors that equivalent effects leave differ at most."""
+    return min(SAME_GAIN * removed, max(left, SAME_EXCESS))
+
+
+def rivals_of(effect: str, without: Arm) -> list[str]:
+    """Return the effects that an effect is confused with, which an arm without it lacks."""
+    known = without.known
+    return [n for n in candidates(without) if n in known[effect].confused_with or effect in known[n].confused_with]
+
+
+def in_place_of(effect: str, now: Hypothesis, fits: Fits, rules: Acceptance) -> tuple[Hypothesis, list[str]]:
+    """Return what fits best where an effect is now, and the names of what leaves as little, itself first.
+
+    Args:
+        effect: one of those of the hypothesis.
+        now: with everything that was found.
+        fits: of rivals.
+        rules: of acceptance.
+    """
+    without = now.refit.arm.without_effect(effect)
+    found = [h for h in fits.instead(without, rivals_of(effect, without), 0.9, 0.05) if not at_bound(h)]
+    if not found:
+        return now, [effect]
+    measure = rules.measure_of([now.score, *(h.score for h in found)])
+    order = order_of(now.score, fits.data, measure)
+    found.sort(key=order)
+    with in_threads(fits.jobs):
+        found[0] = judged(found[0].effects, polish(found[0].refit, fits.nominal, fits.data), fits.data)
+    least = LEAST_GAIN if now.score.windows >= NEAR[1] else 0.0
+    best = found[0] if order(found[0]) < (1.0 - least) * order(now) else now
+    left = measure(best.score)
+    level = left + same(measure(rules.first) - left, left)
+    every = [(effect, now), *((h.effects[0], h) for h in found)]
+    alike = [name for name, h in every if h is not best and measure(h.score) <= level]
+    return best, [effect if best is now else best.effects[0], *alike]
