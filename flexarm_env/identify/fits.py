@@ -100,13 +100,13 @@ class Fits:
         first = [] if any(helped for _, helped in own) else [first_start(arm, effect, self.data.scales)]
         return [dict(start) for start, _ in own] + first
 
-    def instead(self, without: Arm, effects: Sequence[str], done: float, share: float) -> list[Hypothesis]:
+    def instead(self, without: Arm, effects: Sequence[str], done: float) -> list[Hypothesis]:
         """Return an arm refitted with each effect, started where it explains most of what the arm leaves."""
         tasks = [delayed(fit_from_signature)(effect, without, self.nominal, self.data) for effect in effects]
         out = []
-        for i, hypothesis in enumerate(self._parallel(tasks)):
+        for hypothesis in self._parallel(tasks):
             out.append(hypothesis)
-            self.say(done + share * (i + 1) / len(tasks), f"refitting with {hypothesis.effects[0]} instead")
+            self.say(done, f"refitting with {hypothesis.effects[0]} instead")
         return out
 
     def with_offset(self, found: list[Hypothesis], done: float, share: float) -> list[Hypothesis]:

@@ -35,7 +35,7 @@ def rivals_of(effect: str, without: Arm) -> list[str]:
     return [n for n in candidates(without) if n in known[effect].confused_with or effect in known[n].confused_with]
 
 
-def in_place_of(effect: str, now: Hypothesis, fits: Fits, rules: Acceptance) -> tuple[Hypothesis, list[str]]:
+def in_place_of(effect: str, now: Hypothesis, fits: Fits, rules: Acceptance, done: float) -> tuple[Hypothesis, list[str]]:
     """Return what fits best where an effect is now, and the names of what leaves as little, itself first.
 
     Args:
@@ -43,9 +43,10 @@ def in_place_of(effect: str, now: Hypothesis, fits: Fits, rules: Acceptance) -> 
         now: with everything that was found.
         fits: of rivals.
         rules: of acceptance.
+        done: share of the search.
     """
     without = now.refit.arm.without_effect(effect)
-    found = [h for h in fits.instead(without, rivals_of(effect, without), 0.9, 0.05) if not at_bound(h)]
+    found = [h for h in fits.instead(without, rivals_of(effect, without), done) if not at_bound(h)]
     if not found:
         return now, [effect]
     measure = rules.measure_of([now.score, *(h.score for h in found)])

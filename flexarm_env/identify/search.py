@@ -58,8 +58,11 @@ class Search:
         done = 0.1
         while len(self.accepted) < MOST_EFFECTS and self._add_one(done, 0.3):
             done = min(done + 0.3, 0.7)
+            if len(self.accepted) > 1:  # what is wrong in its place asks for one more
+                self._swap(done)
+        if len(self.accepted) == 1:
+            self._swap(done)
         self._drop_useless()
-        self._swap()
 
     def open_hypotheses(self) -> dict[str, Arm]:
         """Return the arms between which the recordings do not decide, by effect; the arm that is left, where they do."""
@@ -199,7 +202,7 @@ class Search:
                 place = self.accepted.index(effect)
                 del self.accepted[place], self.equivalent[place], self.steps[effect]
 
-    def _swap(self) -> None:
+    def _swap(self, done: float) -> None:
         """Put what an effect is confused with in its place, if that fits better beside everything else.
 
         An effect that came in first was held against its rivals where others were missing still, and a constant torque that
@@ -210,7 +213,7 @@ class Search:
                 break
             now = judged(tuple(self.accepted), self.found, self.data)
             if effect == OFFSET or max(now.score.windows, now.fitted.windows) > AT_NOISE:
-                best, names = in_place_of(effect, now, self.fits, self.rules)
+                best, names = in_place_of(effect, now, self.fits, self.rules, done)
                 if best is now:
                     self.equivalent[place] += [name for name in names if name not in self.equivalent[place]]
                 else:

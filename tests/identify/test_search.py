@@ -37,7 +37,7 @@ def test_what_was_taken_gives_way_to_what_fits_better(hidden, taken):
     made = nominal.with_effect(hidden, **TRUE[hidden])
     arm, data = prepare(nominal, [simulate(made, experiment, seed=3, duration=8.0) for experiment in ("square", "sweep")])
     search = searched(taken, data, arm)
-    search._swap()
+    search._swap(0.5)
     assert search.accepted == [hidden]
     assert search.equivalent[0][0] == hidden
     assert list(search.steps) == [hidden]
