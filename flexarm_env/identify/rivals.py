@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.acceptance import LEAST_GAIN, Acceptance
@@ -55,9 +56,17 @@ def in_place_of(effect: str, now: Hypothesis, fits: Fits, rules: Acceptance, don
     with in_threads(fits.jobs):
         found[0] = judged(found[0].effects, polish(found[0].refit, fits.nominal, fits.data), fits.data)
     least = LEAST_GAIN if now.score.windows >= NEAR[1] else 0.0
-    best = found[0] if order(found[0]) < (1.0 - least) * order(now) else now
-    left = measure(best.score)
-    level = left + same(measure(rules.first) - left, left)
+    better = order(found[0]) < (1.0 - least) * order(now)
+    if at_bound(replace(now, effects=(effect,))):  # no size of it explains the data
+        better = better or measure(found[0].score) <= _level(now.score, rules, measure)
+    best = found[0] if better else now
+    level = _level(best.score, rules, measure)
     every = [(effect, now), *((h.effects[0], h) for h in found)]
     alike = [name for name, h in every if h is not best and measure(h.score) <= level]
     return best, [effect if best is now else best.effects[0], *alike]
+
+
+def _level(best: Score, rules: Acceptance, measure: Callable[[Score], float]) -> float:
+    """Return the most that equivalent effects leave."""
+    left = measure(best)
+    return left + same(measure(rules.first) - left, left)
