@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from flexarm_env.arm import Arm
-    from flexarm_env.identify.recording import Recording
+from flexarm_env.cli import arguments
+from flexarm_env.cli.options import ArmName, Columns, Effects, Json, Recordings, Report, Save, Seed
 
 app = typer.Typer(
     add_completion=False,
@@ -21,23 +18,6 @@ app = typer.Typer(
     epilog="Exit code 0: done. 1: done, and the answer is no. 2: bad input, with one line that says which.",
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-
-Recordings = Annotated[
-    list[Path], typer.Argument(metavar="RECORDING…", help="CSV files, or folders of them.", show_default=False)
-]
-ArmName = Annotated[str, typer.Option("--arm", metavar="ARM", help="Arm file, or a shipped arm: thesis, thesis-fem.")]
-Columns = Annotated[
-    Path | None,
-    typer.Option(metavar="FILE.toml", help="How foreign recordings name their columns: a \\[columns] table."),
-]
-Effects = Annotated[
-    list[str] | None,
-    typer.Option(metavar="FILE.py:Name", help="An effect of your own, besides the catalogue; may be repeated. Runs FILE.py."),
-]
-Json = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for stdout.")]
-Report = Annotated[Path | None, typer.Option(metavar="FILE.html", help="Write a page with figures.")]
-Save = Annotated[Path | None, typer.Option(metavar="ARM.toml", help="Write the arm that results.")]
-Seed = Annotated[int, typer.Option(min=0, help="Of everything random.")]
 
 
 def _version(wanted: bool) -> None:
@@ -65,14 +45,14 @@ def compare(
     json: Json = None,
 ) -> None:
     """Replay recordings through an arm: error per signal, regime and frequency band, against the noise."""
-    _check(json, report, read=_read(recordings, columns, arm), specs=effects, pictures=report is not None)
-    model, runs = _load(recordings, arm, columns, effects)
+    arguments.check(json, report, read=arguments.read_by(recordings, columns, arm), specs=effects, pictures=report is not None)
+    model, runs = arguments.load(recordings, arm, columns, effects)
     from flexarm_env.cli import outputs, tables, work
 
     result = work.compare(model, runs)
     work.finish("compare", arm, runs, None, json, work.comparison_json(result), tables.comparison(result))
     if report is not None:
-        line = _command("compare", recordings, arm, columns, effects)
+        line = arguments.command_line("compare", recordings, arm, columns, effects)
         work.report(report, runs, result, None, line | outputs.provenance("compare", arm, runs, None))
 
 
@@ -92,19 +72,19 @@ def diagnose(
     json: Json = None,
 ) -> None:
     """Tell whether constants are wrong or an effect is missing, which one, how sure, and what would settle it."""
-    read = _read(recordings, columns, arm, save)
-    _check(json, report, save, next_run, read=read, specs=effects, pictures=report is not None)
-    model, runs = _load(recordings, arm, columns, effects)
+    read = arguments.read_by(recordings, columns, arm, save)
+    arguments.check(json, report, save, next_run, read=read, specs=effects, pictures=report is not None)
+    model, runs = arguments.load(recordings, arm, columns, effects)
     from flexarm_env.cli import outputs, tables, work
     from flexarm_env.files import write_whole
 
     result = work.diagnose(model, runs, seed, jobs)
     work.finish("diagnose", arm, runs, seed, json, result.as_json(), tables.diagnosis(result))
-    _save(result.arm, save)
+    arguments.save_arm(result.arm, save)
     if next_run is not None and result.next_run is not None:
         write_whole(next_run, result.next_run.as_csv())
     if report is not None:
-        line = _command("diagnose", recordings, arm, columns, effects, seed)
+        line = arguments.command_line("diagnose", recordings, arm, columns, effects, seed)
         made = line | outputs.provenance("diagnose", arm, runs, seed)
         work.report(report, runs, work.compare(result.nominal, runs), result, made)
     if result.verdict in ("unknown", "insufficient_data"):
@@ -125,13 +105,13 @@ def add(
     """Add one effect to an arm and refit: error before, refitted, after. Exit code 1 if it does not fall."""
     own = [effect] if ".py:" in effect else []
     specs = [*(effects or []), *own]
-    _check(json, save, read=_read(recordings, columns, arm, save), specs=specs)
-    model, runs = _load(recordings, arm, columns, specs)
+    arguments.check(json, save, read=arguments.read_by(recordings, columns, arm, save), specs=specs)
+    model, runs = arguments.load(recordings, arm, columns, specs)
     from flexarm_env.cli import tables, work
 
     result = work.add(work.own_name(effect) if own else effect, model, runs, seed)
     work.finish("add", arm, runs, seed, json, work.addition_json(result), tables.addition(result))
-    _save(result.arm, save, hint=True)
+    arguments.save_arm(result.arm, save, hint=True)
     if not result.error["final"] < result.error["refitted"]:
         raise typer.Exit(1)
 
@@ -147,13 +127,13 @@ def fit(
     json: Json = None,
 ) -> None:
     """Refit the constants of an arm, and add nothing."""
-    _check(json, save, read=_read(recordings, columns, arm, save), specs=effects)
-    model, runs = _load(recordings, arm, columns, effects)
+    arguments.check(json, save, read=arguments.read_by(recordings, columns, arm, save), specs=effects)
+    model, runs = arguments.load(recordings, arm, columns, effects)
     from flexarm_env.cli import tables, work
 
     result = work.fit(model, runs, seed)
     work.finish("fit", arm, runs, seed, json, work.fit_json(result), tables.fit(result))
-    _save(result.arm, save, hint=True)
+    arguments.save_arm(result.arm, save, hint=True)
 
 
 @app.command()
@@ -172,10 +152,10 @@ def simulate(
     json: Json = None,
 ) -> None:
     """Make a recording with an arm's model."""
-    _check(json, save, read=_read([Path(input)] if input else [], columns, arm), specs=effects)
+    arguments.check(json, save, read=arguments.read_by([Path(input)] if input else [], columns, arm), specs=effects)
     from flexarm_env.cli import work
 
-    model = _arm(arm, effects)
+    model = arguments.load_arm(arm, effects)
     work.simulate(model, arm, input, (duration, rate, seed, noise), columns, save, json)
 
 
@@ -185,7 +165,7 @@ def effects(
     json: Json = None,
 ) -> None:
     """Show the catalogue of effects, or one effect: equation, parameters, what it looks like in data."""
-    _check(json)
+    arguments.check(json)
     from flexarm_env.cli import catalogue
 
     catalogue.show(name, json)
@@ -198,7 +178,7 @@ def demo(
     json: Json = None,
 ) -> None:
     """Find the effect that is hidden in three recordings, add it, and draw how the error falls."""
-    _check(json, pictures=True)
+    arguments.check(json, pictures=True)
     from flexarm_env.demo.story import tell
 
     if not tell(output, seed, json):
@@ -211,7 +191,7 @@ def thesis(
     json: Json = None,
 ) -> None:
     """Check the claims of the thesis that the model comes from, and draw its figures again."""
-    _check(json, pictures=True)
+    arguments.check(json, pictures=True)
     from flexarm_env.thesis.reproduce import reproduce
 
     reproduce(output, json)
@@ -232,7 +212,7 @@ def lab(
     from flexarm_env.cli import outputs
 
     outputs.need_lab()
-    model, runs = _load(recordings, arm, columns, effects) if recordings else (_arm(arm, effects), [])
+    model, runs = arguments.load(recordings, arm, columns, effects) if recordings else (arguments.load_arm(arm, effects), [])
     from flexarm_env.lab.server import serve
 
     serve(model, runs, columns, port, show)
@@ -244,63 +224,3 @@ def bench(context: typer.Context) -> None:
     from flexarm_env.cli import work
 
     raise typer.Exit(work.bench(context.args))
-
-
-def _check(
-    json: Path | None,
-    *places: Path | None,
-    read: Sequence[Path] = (),
-    specs: Sequence[str] | None = None,
-    pictures: bool = False,
-) -> None:
-    from flexarm_env.cli import outputs
-
-    files = [Path(spec.rpartition(":")[0]) for spec in specs or () if ":" in spec]
-    outputs.check_places(json, *places, read=[*read, *files])
-    if pictures:
-        outputs.need_plots()
-
-
-def _read(recordings: Sequence[Path], columns: Path | None, arm: str, save: Path | None = None) -> list[Path]:
-    """Return what a command reads and must not write; the arm's own file may be saved anew."""
-    found = [*recordings, *([columns] if columns is not None else [])]
-    return [*found, Path(arm)] if Path(arm).is_file() and save != Path(arm) else found
-
-
-def _command(
-    name: str,
-    recordings: Sequence[Path],
-    arm: str,
-    columns: Path | None,
-    specs: Sequence[str] | None,
-    seed: int | None = None,
-) -> dict[str, str]:
-    """Return the command line that does this again, for the report."""
-    import shlex
-
-    words = ["flexarm", name, *map(str, recordings), "--arm", arm]
-    words += ["--columns", str(columns)] if columns is not None else []
-    words += [word for spec in specs or () for word in ("--effects", spec)]
-    words += ["--seed", str(seed)] if seed is not None else []
-    return {"command_line": shlex.join(words)}
-
-
-def _arm(name: str, specs: Sequence[str] | None) -> Arm:
-    from flexarm_env.arm import Arm
-    from flexarm_env.cli import inputs
-
-    return Arm.load(name, inputs.known_effects(specs or []))
-
-
-def _load(paths: list[Path], name: str, columns: Path | None, specs: Sequence[str] | None) -> tuple[Arm, list[Recording]]:
-    from flexarm_env.cli import inputs
-
-    arm = _arm(name, specs)
-    return arm, inputs.read_recordings(arm, paths, columns)
-
-
-def _save(arm: Arm, path: Path | None, hint: bool = False) -> None:
-    if path is not None:
-        arm.save(path)
-    elif hint:
-        typer.echo("Not saved; --save ARM.toml keeps the arm.", err=True)

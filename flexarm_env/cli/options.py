@@ -1,0 +1,25 @@
+"""Arguments and options that several commands share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+Recordings = Annotated[
+    list[Path], typer.Argument(metavar="RECORDING…", help="CSV files, or folders of them.", show_default=False)
+]
+ArmName = Annotated[str, typer.Option("--arm", metavar="ARM", help="Arm file, or a shipped arm: thesis, thesis-fem.")]
+Columns = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE.toml", help="How foreign recordings name their columns: a \\[columns] table."),
+]
+Effects = Annotated[
+    list[str] | None,
+    typer.Option(metavar="FILE.py:Name", help="An effect of your own, besides the catalogue; may be repeated. Runs FILE.py."),
+]
+Json = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for stdout.")]
+Report = Annotated[Path | None, typer.Option(metavar="FILE.html", help="Write a page with figures.")]
+Save = Annotated[Path | None, typer.Option(metavar="ARM.toml", help="Write the arm that results.")]
+Seed = Annotated[int, typer.Option(min=0, help="Of everything random.")]
