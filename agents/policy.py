@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.env.batch import Setup
+from flexarm_env.env.setup import Setup
 from flexarm_env.tasks import Task
 
 

@@ -13,8 +13,9 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.env.batch import Batch, Setup
+from flexarm_env.env.batch import Batch
 from flexarm_env.env.kernel import COMMAND, REWARD, TARGET, TERM, TERMINATED
+from flexarm_env.env.setup import Setup
 from flexarm_env.env.variation import Disturbance, Range, find_disturbance, find_variation
 from flexarm_env.env.view import View
 from flexarm_env.errors import InputError, did_you_mean

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.env import kernel as at
-from flexarm_env.env.batch import Batch, Setup
+from flexarm_env.env.batch import Batch
+from flexarm_env.env.setup import Setup
 from flexarm_env.render import Renderer, Scene, beam_shape
 
 STATIONS = 41

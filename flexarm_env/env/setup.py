@@ -1,0 +1,125 @@
+"""What an environment is made of, and the tables of numbers that its kernel takes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+from flexarm_env.env import kernel as at
+from flexarm_env.env.variation import Disturbance, Variation
+from flexarm_env.errors import InputError
+from flexarm_env.plant.plant import Plant
+from flexarm_env.tasks import REWARD_TERMS, Task
+
+Floats = NDArray[np.float64]
+
+THESIS_GEAR_RATIO = 1.5
+#: For the thesis's arm, readings end here: the range of the rig's converters and of its pot.
+LARGEST = {"arm_angle": 4.0 * math.pi, "motor_speed": 200.0, "strain_mid": 10.0, "strain_base": 10.0, "tip_deflection": 2.0}
+#: What normalised observations are divided by.
+SCALES = {"arm_angle": math.pi, "motor_speed": 5.0, "strain_mid": 2.0, "strain_base": 2.0, "tip_deflection": 0.2}
+MOST_RATE = 10_000.0
+
+
+@dataclass(frozen=True)
+class Setup:
+    """All that an environment is made of.
+
+    Attributes:
+        task: start, target, reward, end.
+        arm: the nominal one.
+        variation: what is drawn anew for each episode.
+        disturbance: taps and drop-outs.
+        rate: control steps per second [Hz].
+        physical: whether observations are in physical units; else over SCALES.
+    """
+
+    task: Task
+    arm: Arm
+    variation: Variation = field(default_factory=Variation)
+    disturbance: Disturbance = field(default_factory=Disturbance)
+    rate: float = 200.0
+    physical: bool = False
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.rate) and 1.0 <= self.rate <= MOST_RATE):
+            raise InputError(f"control_rate = {self.rate} Hz; allowed are 1 to {MOST_RATE:g}")
+        if not self.arm.constants["drive"]["limit"] > 0.0:
+            raise InputError(f"arm '{self.arm.name}' has no limit of its drive; set limit under [drive] in its file")
+        if not self.arm.sensors:
+            raise InputError(f"arm '{self.arm.name}' has no sensors; an environment needs one at least")
+
+    @property
+    def samples(self) -> int:
+        """Control steps of an episode."""
+        return max(round(self.task.duration * self.rate), 1)
+
+    def scales(self) -> Floats:
+        """Return what readings and target are divided by (signals + 1,)."""
+        if self.physical:
+            return np.ones(len(self.arm.sensors) + 1)
+        return np.array([*(SCALES[s] * self._gearing(s) for s in self.arm.sensors), SCALES["arm_angle"]])
+
+    def bounds(self) -> Floats:
+        """Return the largest observation of each reading and of the target (signals + 1,)."""
+        return self.largest() / self.scales()
+
+    def largest(self) -> Floats:
+        """Return where readings and target end (signals + 1,), SI units."""
+        return np.array([*(LARGEST[s] * self._gearing(s) for s in self.arm.sensors), LARGEST["arm_angle"]])
+
+    def _gearing(self, signal: str) -> float:
+        """How much faster the motor turns than that of the thesis's arm, where that is what is measured."""
+        return self.arm.constants["drive"]["gear_ratio"] / THESIS_GEAR_RATIO if signal == "motor_speed" else 1.0
+
+
+def check_layouts(setup: Setup, plant: Plant) -> None:
+    """Refuse ranges over which an arm becomes another kind of arm.
+
+    Raises:
+        InputError: naming the ranges.
+    """
+    ranges = setup.variation.ranges
+    for end in (0.0, 1.0) if ranges else ():
+        other = setup.variation.arm(setup.arm, [end] * len(ranges)).plant(1.0 / setup.rate)
+        if not np.array_equal(other.layout, plant.layout) or other.delay_samples != plant.delay_samples:
+            paths = ", ".join(path for path, _, _ in ranges)
+            raise InputError(f"the ranges of {paths} change how the arm is built, not only its numbers; narrow them")
+
+
+def sensors_of(setup: Setup) -> Floats:
+    """Return the sensors' numbers (signals, SENSOR)."""
+    table = np.zeros((len(setup.arm.sensors), at.SENSOR))
+    scales = setup.scales()
+    largest = setup.largest()
+    for j, sensor in enumerate(setup.arm.sensors.values()):
+        late = sensor["delay"] * setup.rate
+        whole = math.floor(late + 1e-9)
+        step = sensor["resolution"]
+        per_step = 1.0 / step if step else 0.0
+        table[j] = (sensor["noise"], step, per_step, largest[j], 1.0 / scales[j], whole, max(late - whole, 0.0))
+    return table
+
+
+def per_torque_of(arm: Arm) -> float:
+    """Return the command [A or V] that is as much as a torque on the hub [1/Nm]."""
+    drive = arm.constants["drive"]
+    per_torque = 1.0 / (drive["gear_ratio"] * drive["torque_constant"])
+    return per_torque * drive["resistance"] if arm.input == "voltage" else per_torque
+
+
+def settings_of(setup: Setup, limit: float) -> Floats:
+    """Return the task's, the disturbances' and the reward's numbers, in the kernel's order (settings,)."""
+    trouble, rate = setup.disturbance, setup.rate
+    settings = np.zeros(at.SETTINGS)
+    settings[at.INTERVAL], settings[at.HALF_PERIOD], settings[at.RANGE] = 1.0 / rate, setup.task.half_period, setup.task.range
+    settings[at.LIMIT], settings[at.TARGET_SCALE] = limit, setup.scales()[-1]
+    settings[at.TAP_CHANCE], settings[at.TAP_TORQUE] = trouble.tap_rate / rate, trouble.tap_torque
+    settings[at.TAP_SAMPLES] = max(round(trouble.tap_time * rate), 1)
+    settings[at.DROP_CHANCE], settings[at.DROP_SAMPLES] = trouble.dropout_rate / rate, max(round(trouble.dropout_time * rate), 1)
+    settings[at.WEIGHTS :] = [setup.task.weights.get(name, 0.0) for name in REWARD_TERMS]
+    return settings
