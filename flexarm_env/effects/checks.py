@@ -30,6 +30,9 @@ def checked(effect: type[Effect]) -> type[Effect]:
             raise InputError(f"{where}: parameters['{key}'] is {parameter!r}; write Parameter(unit, low, high, typical)")
         if parameter.unit:
             check_unit(parameter.unit)
+    others = effect.confused_with
+    if not isinstance(others, (tuple, list)) or not all(isinstance(o, str) and o != effect.name for o in others):
+        raise InputError(f"{where}: confused_with is {others!r}; give a tuple of other effects' names")
     ports = {port: function for port in ("structure", *PORT_ARGUMENTS) if (function := effect.port(port))}
     if not ports:
         raise InputError(f"{where} has no port: give it one of structure, {', '.join(PORT_ARGUMENTS)}")

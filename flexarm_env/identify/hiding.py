@@ -62,7 +62,10 @@ def could_hide(found: Refit, data: Data, least: float, jobs: int = 1) -> dict[st
     """
     base = screening_base(found, data, (LEVEL,))
     before = brief_score(found.arm, data) ** 2
-    names = [name for name in candidates(found.arm) if found.arm.known[name].fitted]
+    known = found.arm.known
+    names = [
+        n for n in candidates(found.arm) if known[n].fitted and any(p.null is not None for p in known[n].parameters.values())
+    ]
     sized = Parallel(n_jobs=jobs)(delayed(_hidden)(base, name, before, data, least) for name in names)
     return {name: hiding for name, hiding in zip(names, sized, strict=True) if hiding}
 

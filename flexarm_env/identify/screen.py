@@ -137,7 +137,8 @@ def _by_sensor(base: Base, effect: str, start: dict[str, float]) -> list[dict[st
 def _scaled(arm: Arm, effect: str, start: Mapping[str, float], scales: Mapping[str, float]) -> dict[str, float]:
     """Return a start in the scales of the data, within the bounds."""
     parameters = arm.known[effect].parameters
-    values = {key: value * scales.get(parameters[key].unit, 1.0) for key, value in start.items()}
+    values = {key: p.typical for key, p in parameters.items()}
+    values |= {key: value * scales.get(parameters[key].unit, 1.0) for key, value in start.items()}
     return {key: min(max(v, parameters[key].low), parameters[key].high) for key, v in values.items()}
 
 

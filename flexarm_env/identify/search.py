@@ -21,7 +21,7 @@ from flexarm_env.identify.hypothesis import (
 from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.problem import Score, score
 from flexarm_env.identify.refit import FAR_OFF, Progress, Refit, as_it_is, polish, refit, with_effects_of
-from flexarm_env.identify.rivals import SAME_GAIN, in_place_of, order_of, same
+from flexarm_env.identify.rivals import SAME_GAIN, Place, in_place_of, order_of, same
 from flexarm_env.identify.screen import Trial
 
 #: How many candidates are refitted in full in each round, and only those that lower the cost of the screening to the first
@@ -67,8 +67,9 @@ class Search:
     def open_hypotheses(self) -> dict[str, Arm]:
         """Return the arms between which the recordings do not decide, by effect; the arm that is left, where they do."""
         for names in self.equivalent:
+            beside = set(self.accepted) - {names[0]}
             rivals = {name: self.ranking[name][1] for name in names[1:] if name in self.ranking}
-            fitted = {name: refitted.arm for name, refitted in rivals.items() if refitted is not None}
+            fitted = {name: r.arm for name, r in rivals.items() if r is not None and beside <= set(r.arm.effects)}
             if fitted:
                 return {names[0]: self.found.arm, **fitted}
         return {"": self.found.arm}
@@ -213,19 +214,20 @@ class Search:
                 break
             now = judged(tuple(self.accepted), self.found, self.data)
             if effect == OFFSET or max(now.score.windows, now.fitted.windows) > AT_NOISE:
-                best, names = in_place_of(effect, now, self.fits, self.rules, done)
-                if best is now:
-                    self.equivalent[place] += [name for name in names if name not in self.equivalent[place]]
-                else:
-                    self._put(place, best, names)
+                self._put(place, in_place_of(effect, now, self.fits, self.rules, done))
         self.equivalent = [[n for n in names if n == names[0] or n not in self.accepted] for names in self.equivalent]
 
-    def _put(self, place: int, best: Hypothesis, names: list[str]) -> None:
-        """Put an effect, the first of equivalent ones, in the place of another that it is better than."""
-        name, before = names[0], self.accepted[place]
-        gains = [self.ranking[n][0] for n in (name, before) if n in self.ranking]
-        self.ranking[name] = (max(gains, default=0.0), best.refit)
-        self.found, self.best = best.refit, best.score
-        self.accepted[place], self.equivalent[place] = name, names
-        del self.steps[before]
-        self.steps[name] = best.score
+    def _put(self, place: int, found: Place) -> None:
+        """Put the effect that fits best in a place, and what these recordings cannot tell from it."""
+        name, before = found.effect, self.accepted[place]
+        gain = max((self.ranking[n][0] for n in (name, before) if n in self.ranking), default=0.0)
+        for rival, hypothesis in {name: found.best, **found.alike}.items():
+            self.ranking[rival] = (self.ranking[rival][0] if rival in self.ranking else gain, hypothesis.refit)
+        untried = [n for n in self.equivalent[place] if n not in found.tried]
+        self.equivalent[place] = [name, *found.alike, *untried]
+        if name != before:
+            self.ranking[name] = (gain, found.best.refit)
+            self.found, self.best = found.best.refit, found.best.score
+            self.accepted[place] = name
+            self.steps[name] = self.steps.pop(before)
+            self.steps[self.accepted[-1]] = self.best

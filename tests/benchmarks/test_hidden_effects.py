@@ -131,9 +131,8 @@ def test_stepwise_adds_until_the_criterion_rises_and_keeps_its_first_step():
     runs = [simulate(arm.with_effect("cable_stiffness", stiffness=0.3, rest_angle=0.0), "square", seed=1)]
     found = stepwise(arm, runs)
     assert found["effects"][0] == "cable_stiffness"
-    first = best_fit_wins({"case": "its own", "found": found, "cpu_seconds": np.inf})
+    first = best_fit_wins({"case": "its own", "found": found, "cpu_seconds": 1000.0})
     assert first["found"]["effects"] == ["cable_stiffness"]
     assert first["found"]["error"]["final"] < 1.1 < first["found"]["error"]["refitted"]
-    assert 0.0 < first["cpu_seconds"] < np.inf
-    right = stepwise(arm, [simulate(arm, "square", seed=1)])
-    assert len(right["first_step"]["found"]["effects"]) == 1  # the best fit always wins
+    assert 0.0 < first["cpu_seconds"] < 1000.0
+    assert stepwise(arm, [simulate(arm, "square", seed=1)])["effects"] == []

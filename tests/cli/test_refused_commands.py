@@ -120,6 +120,8 @@ def test_pipes_are_refused_and_not_waited_for(flexarm, runs, tmp_path):
         (SIZE, SIZE.replace("N*m/rad", "furlungs"), "unknown unit 'furlungs'"),
         ("def torque(angle, size)", "def torque(hub_angle, size)", "did you mean 'angle'"),
         (PORT, "    torque = lambda angle, size: 0.0", "def"),
+        ('"a spring"', '"a spring"\n    confused_with = "backlash"', "a tuple of other effects' names"),
+        ('"a spring"', '"a spring"\n    confused_with = ("mine",)', "a tuple of other effects' names"),
     ],
 )
 def test_an_effect_that_is_not_whole_is_refused(flexarm, runs, tmp_path, old, new, words):

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import ClassVar
+
 import pytest
 
 from flexarm_env import Arm, simulate
+from flexarm_env.effects import Effect
 from flexarm_env.identify.data import Data, prepare, torque_scale
 from flexarm_env.identify.refit import as_it_is
-from flexarm_env.identify.screen import SCREENING_LEVELS, Base, screening_base, screening_bases, signatures
+from flexarm_env.identify.screen import SCREENING_LEVELS, Base, first_start, screening_base, screening_bases, signatures, sized
+from flexarm_env.parameters import Parameter
 
 
 def seen_by(machine: Arm, model: Arm) -> tuple[Arm, Data]:
@@ -56,3 +61,25 @@ def test_errors_weigh_the_same_from_every_start(arm):
     assert (second.problem.prior == first.problem.prior).all()
     assert second.problem.torque_noise == first.problem.torque_noise
     assert (second.residual != first.residual).any()
+
+
+class Shaped(Effect):
+    """Its size is left out of its starts, and one of its parameters has none."""
+
+    name = "shaped"
+    equation = "τ = −k (θ − s)"
+    parameters: ClassVar = {
+        "stiffness": Parameter("N*m/rad", 0.0, 1.0, 0.1, null=0.0),
+        "start": Parameter("rad", -1.0, 1.0, 0.2),
+    }
+    looks_like = "a spring"
+
+    @classmethod
+    def starts(cls) -> list[dict[str, float]]:
+        return [{"start": 0.3}]
+
+
+def test_a_start_that_leaves_values_out_has_typical_ones(arm):
+    known = replace(arm, known=arm.known.extended(Shaped))
+    assert first_start(known, "shaped", {}) == {"stiffness": 0.1, "start": 0.3}
+    assert sized(known, "shaped", first_start(known, "shaped", {}), 0.5) == {"stiffness": 0.05, "start": 0.3}

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
 from flexarm_env import Arm
 from flexarm_env.identify import fits
 from flexarm_env.identify.acceptance import Acceptance
 from flexarm_env.identify.data import Data, prepare
-from flexarm_env.identify.problem import score
+from flexarm_env.identify.hypothesis import Hypothesis
+from flexarm_env.identify.problem import Score, score
 from flexarm_env.identify.refit import best_refit, refit
+from flexarm_env.identify.rivals import Place, rivals_of
 from flexarm_env.identify.search import Search
 from flexarm_env.identify.simulate import simulate
 
@@ -55,3 +59,59 @@ def test_an_effect_that_began_too_large_begins_again(monkeypatch):
     assert found[0].effects == ("backlash",)
     assert found[0].refit.arm.effects["backlash"]["gap"] == pytest.approx(0.0007, rel=0.1)
     assert found[0].score.windows < 0.5 * score(base.arm, data).windows
+
+
+def hypothesis(*effects: str, error: float = 1.0) -> Hypothesis:
+    """Of the thesis's arm with some effects."""
+    arm = Arm.load("thesis")
+    for effect in effects:
+        arm = arm.with_effect(effect)
+    return Hypothesis(effects, SimpleNamespace(arm=arm), Score(error, error), Score(error, error))
+
+
+def two_accepted() -> Search:
+    search = Search(Arm.load("thesis"), None, 1, lambda done, text: None)
+    search.accepted = ["cable_stiffness", "tach_filter"]
+    search.equivalent = [["cable_stiffness", "base_tilt", "air_drag"], ["tach_filter"]]
+    search.steps = {"cable_stiffness": Score(3.0, 3.0), "tach_filter": Score(1.2, 1.2)}
+    search.ranking = {"cable_stiffness": (0.9, None), "constant_torque": (0.7, hypothesis("constant_torque").refit)}
+    return search
+
+
+def test_an_effect_in_anothers_place_keeps_the_error_after_it():
+    search = two_accepted()
+    taken = hypothesis("constant_torque", "tach_filter")
+    alike = {"asymmetric_coulomb": hypothesis("asymmetric_coulomb", "tach_filter")}
+    search._put(0, Place("constant_torque", taken, alike, frozenset(["cable_stiffness", "base_tilt", *alike, "constant_torque"])))
+    assert search.accepted == ["constant_torque", "tach_filter"]
+    assert search.steps == {"constant_torque": Score(3.0, 3.0), "tach_filter": Score(1.0, 1.0)}
+    assert search.equivalent[0] == ["constant_torque", "asymmetric_coulomb", "air_drag"]  # air_drag was not tried again
+    assert search.ranking["constant_torque"] == (0.9, taken.refit)
+    assert search.found is taken.refit
+
+
+def test_rivals_that_lost_are_equivalent_no_more():
+    search = two_accepted()
+    search.found = search.best = None
+    now = hypothesis("cable_stiffness", "tach_filter")
+    search._put(0, Place("cable_stiffness", now, {}, frozenset(["cable_stiffness", "base_tilt", "constant_torque"])))
+    assert search.equivalent[0] == ["cable_stiffness", "air_drag"]
+    assert search.steps["cable_stiffness"] == Score(3.0, 3.0)
+    assert search.found is None
+
+
+def test_open_hypotheses_have_everything_else_that_was_found():
+    search = two_accepted()
+    search.found = hypothesis(*search.accepted).refit
+    search.equivalent[0] = ["cable_stiffness", "constant_torque", "asymmetric_coulomb"]
+    assert list(search.open_hypotheses()) == [""]  # that with a constant torque lacks the tachometer's filter
+    beside = hypothesis("constant_torque", "tach_filter").refit
+    search.ranking["constant_torque"] = (0.7, beside)
+    assert search.open_hypotheses() == {"cable_stiffness": search.found.arm, "constant_torque": beside.arm}
+
+
+def test_what_another_effect_changes_has_no_rivals():
+    arm = Arm.load("thesis")
+    assert "dead_zone" in rivals_of("brush_drop", arm)
+    assert "stiction" in arm.effects
+    assert rivals_of("coulomb", arm.without_effect("coulomb")) == []
