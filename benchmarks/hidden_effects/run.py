@@ -10,9 +10,11 @@ from typing import Any
 
 from joblib import Parallel, delayed
 
+import flexarm_env
 from benchmarks.hidden_effects.cases import Case
 from benchmarks.hidden_effects.machine import record
 from flexarm_env import Arm, Recording, diagnose
+from flexarm_env.cli.outputs import commit
 from flexarm_env.files import write_whole
 
 Method = Callable[[Arm, Sequence[Recording]], dict[str, Any]]
@@ -32,7 +34,9 @@ def _answer(case: Case, method: Method, folder: Path) -> dict[str, Any]:
             return kept
     began = time.process_time()
     found = method(Arm.load(ARM), record(case))
-    answer = {"case": case.as_json(), "found": found, "cpu_seconds": round(time.process_time() - began, 1)}
+    seconds = round(time.process_time() - began, 1)
+    made_by = {"version": flexarm_env.__version__, "commit": commit()}
+    answer = {"case": case.as_json(), "found": found, "cpu_seconds": seconds} | made_by
     write_whole(path, json.dumps(answer, indent=1) + "\n")
     return answer
 

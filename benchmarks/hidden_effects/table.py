@@ -8,9 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import flexarm_env
 from benchmarks.hidden_effects.score import Figure, figures, wrong
-from flexarm_env.cli.outputs import commit
 from flexarm_env.files import write_whole
 
 
@@ -25,12 +23,12 @@ def markdown(found: Sequence[Figure], mistakes: Sequence[tuple[str, str, int]], 
 
 
 def write(folder: Path, answers: Sequence[dict[str, Any]], method: str, seed: int, command: str) -> list[Figure]:
-    """Write table.md and table.json into a folder; return the figures."""
+    """Write table.md and table.json into a folder, with the commits that answered; return the figures."""
     found, mistakes = figures(answers), wrong(answers)
-    stamp = {"command": command, "version": flexarm_env.__version__, "commit": commit(), "seed": seed, "method": method}
-    made = (
-        f"Method `{method}`, seed {seed}, {len(answers)} cases, FlexArm {stamp['version']}, commit {stamp['commit']}: `{command}`"
-    )
+    versions, commits = (sorted({answer[key] or "unknown" for answer in answers}) for key in ("version", "commit"))
+    stamp = {"command": command, "versions": versions, "commits": commits, "seed": seed, "method": method}
+    made_by = f"FlexArm {', '.join(versions)}, commit {', '.join(commits)}"
+    made = f"Method `{method}`, seed {seed}, {len(answers)} cases, answered by {made_by}: `{command}`"
     write_whole(folder / "table.md", markdown(found, mistakes, made))
     content = stamp | {"cases": len(answers), "figures": [asdict(f) for f in found], "mistakes": mistakes}
     write_whole(folder / "table.json", json.dumps(content, indent=1) + "\n")

@@ -7,6 +7,7 @@ import json
 import numpy as np
 import pytest
 
+import flexarm_env
 from benchmarks.hidden_effects import table, truth
 from benchmarks.hidden_effects.baselines import best_fit_wins, stepwise
 from benchmarks.hidden_effects.cases import CATALOGUE, cases
@@ -15,6 +16,7 @@ from benchmarks.hidden_effects.run import run
 from benchmarks.hidden_effects.score import figures, wrong
 from benchmarks.hidden_effects.sindy import sparse_effects
 from flexarm_env.arm import Arm
+from flexarm_env.cli.outputs import commit
 from flexarm_env.effects import catalogue
 from flexarm_env.identify.simulate import simulate
 
@@ -23,6 +25,8 @@ def answer(case, effects, verdict="effects", final=1.0):
     return {
         "case": case.as_json(),
         "cpu_seconds": 1.0,
+        "version": "0.1.0",
+        "commit": "abc",
         "found": {
             "verdict": verdict,
             "effects": effects,
@@ -81,7 +85,9 @@ def test_the_table_counts_what_was_answered(tmp_path):
     assert found["false alarm on nulls"].value == pytest.approx(1.0 / 60.0)
     assert found["false alarm on nulls"].met
     assert wrong(answers) == [(threes[0].effects[0], "viscous", 1)]
+    answers[0]["commit"] = "abd"
     table.write(tmp_path, answers, "diagnose", 1, "command")
+    assert "answered by FlexArm 0.1.0, commit abc, abd: `command`" in (tmp_path / "table.md").read_text()
     assert "| false alarm on nulls | ≤ 2 % | 1.7 % of 60 | met |" in (tmp_path / "table.md").read_text()
     assert json.loads((tmp_path / "table.json").read_text())["cases"] == len(answers)
 
@@ -108,7 +114,8 @@ def test_a_stopped_run_goes_on(tmp_path):
     for _ in range(2):
         run(chosen, method, tmp_path, 1, lambda count, answer: None)
     assert calls == [3, 3]
-    assert (tmp_path / f"{chosen[0].name}.json").exists()
+    kept = json.loads((tmp_path / f"{chosen[0].name}.json").read_text())
+    assert (kept["version"], kept["commit"]) == (flexarm_env.__version__, commit())
 
 
 @pytest.mark.parametrize(
