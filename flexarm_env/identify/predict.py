@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.data import WINDOW, Data, Run, place, torque_scale
+from flexarm_env.identify.data import WINDOW, Data
 from flexarm_env.identify.observer import modal_gains, physical_gains
+from flexarm_env.identify.run import Run, place
+from flexarm_env.identify.scales import torque_scale
 from flexarm_env.plant.plant import NO_GAINS, NOT_MEASURED, Plant
 
 Floats = NDArray[np.float64]
@@ -67,5 +69,5 @@ def window_observers(arm: Arm, plant: Plant, data: Data, levels: Sequence[float]
     """Return the kernel's gains of the replays that estimate the states from which windows start."""
     scale, own = torque_scale(arm, data.runs), arm.constants["drive"]["torque_noise"]
     noises = sorted({max(level * scale, own) for level in levels})
-    nudged = [modal_gains(plant, physical_gains(plant, data.noise, noise, data.interval)) for noise in noises]
+    nudged = [modal_gains(plant, physical_gains(plant, data.noise, noise, data.interval, data.scales["N*m"])) for noise in noises]
     return [NO_GAINS, *nudged]

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.coordinates import Coordinate, place_values
-from flexarm_env.identify.data import Data, Run
+from flexarm_env.identify.data import Data
 from flexarm_env.identify.observer import innovation_sigma, physical_gains
 from flexarm_env.identify.predict import replay, window_observers, window_replay
+from flexarm_env.identify.run import Run
 from flexarm_env.plant.plant import Plant
 
 Floats = NDArray[np.float64]
@@ -98,7 +99,8 @@ class Problem:
         # the same gains while an arm's numbers are fitted, others for another arm
         key = (payload, tuple(arm.effects), plant.modes, plant.states)
         if key not in self._gains:
-            self._gains[key] = physical_gains(plant, self.data.noise, self.torque_noise, self.data.interval)
+            data = self.data
+            self._gains[key] = physical_gains(plant, data.noise, self.torque_noise, data.interval, data.scales["N*m"])
         return self._gains[key]
 
 
@@ -161,10 +163,9 @@ def _squares(run: Run, replayed: Floats, rows: NDArray[np.bool_], data: Data) ->
 
 
 def _score_innovations(plants: Mapping[float, Plant], data: Data, torque_noise: float, held_out: bool) -> Score:
-    gains, sigmas = (
-        {payload: made(plant, data.noise, torque_noise, data.interval) for payload, plant in plants.items()}
-        for made in (physical_gains, innovation_sigma)
-    )
+    noises = (data.noise, torque_noise, data.interval)
+    gains = {payload: physical_gains(plant, *noises, data.scales["N*m"]) for payload, plant in plants.items()}
+    sigmas = {payload: innovation_sigma(plant, *noises) for payload, plant in plants.items()}
     totals = np.zeros(2)
     count = 0
     for run in data.runs:
