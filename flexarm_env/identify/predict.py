@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 WINDOW_LEVELS = (1e-4, 2e-3, 2e-2)
 #: Drift of a held angle in one sample, over the noise of its sensor, at the torque noise that an arm states; at 1 Nm, where it
 #: states none and is of the thesis's size.
-HELD_DRIFT = 0.075
+HELD_DRIFT = 0.07
 
 
 def replay(plant: Plant, run: Run, noise: Floats, physical: Floats | None = None) -> Floats:
