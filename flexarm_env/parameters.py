@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from flexarm_env.signals import SIGNALS
@@ -21,6 +22,7 @@ class Parameter:
             0 keeps the value as it is, infinity (the default of an effect's parameter) lets data decide.
         meaning: one line for a person.
         source: equation, table or paper.
+        of_command: whether it is a command's size, in A or V as the drive has it.
     """
 
     unit: str
@@ -31,6 +33,11 @@ class Parameter:
     spread: float = float("inf")
     meaning: str = ""
     source: str = ""
+    of_command: bool = False
+
+    def scaled_by(self, scales: Mapping[str, float]) -> float:
+        """Return how much larger than typical it is where quantities are so many times as large, by unit and for "command"."""
+        return scales.get("command" if self.of_command else self.unit, 1.0)
 
 
 TABLE = "thesis Table A.1"

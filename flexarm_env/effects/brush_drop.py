@@ -17,7 +17,7 @@ class BrushDrop(Effect):
     name = "brush_drop"
     equation = "i = command ∓ V_b/R beyond ±V_b/R, else 0"
     parameters: ClassVar = {
-        "drop": Parameter("V", 0.0, 100.0, 0.2, null=0.0, meaning="V_b, over both brushes"),
+        "drop": Parameter("V", 0.0, 100.0, 0.2, null=0.0, meaning="V_b, over both brushes", of_command=True),
         "resistance": Parameter("ohm", 1e-6, 1e6, 1.35, spread=0.0, meaning="R, of the armature", source="thesis App. A"),
     }
     looks_like = "small commands do nothing and large ones fall short by a constant"

@@ -13,7 +13,7 @@ class DeadZone(Effect):
 
     name = "dead_zone"
     equation = "i = command ∓ w beyond ±w, else 0"
-    parameters: ClassVar = {"width": Parameter("", 0.0, 1e4, 0.1, null=0.0, meaning="w, half the zone [A or V]")}
+    parameters: ClassVar = {"width": Parameter("", 0.0, 1e4, 0.1, null=0.0, meaning="w, half the zone [A or V]", of_command=True)}
     looks_like = "small commands do nothing and large ones fall short by a constant"
     confused_with = ("coulomb", "stiction")
 

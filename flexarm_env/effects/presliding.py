@@ -14,7 +14,7 @@ class Presliding(Effect):
 
     name = "presliding"
     equation = "dT/dθ = (1 − T/T_c sgn ω) / c"
-    parameters: ClassVar = {"compliance": Parameter("rad/(N*m)", 0.0, 1.0, 2e-3, null=0.0, meaning="c, of friction that stands")}
+    parameters: ClassVar = {"compliance": Parameter("rad/N/m", 0.0, 1.0, 2e-3, null=0.0, meaning="c, of friction that stands")}
     modifies = "coulomb"
     looks_like = "the hub rings where it should stick, and creeps back a little after it has stopped"
     confused_with = ("gear_compliance", "stiction")
@@ -26,5 +26,5 @@ class Presliding(Effect):
         if level <= 0.0:
             return 0.0
         sliding = math.copysign(level, travel)
-        # what yields less than 2e-4 rad/Nm is stiffer than gears: as good as rigid, and slow to follow
-        return sliding + (before - sliding) * math.exp(-abs(travel) / (max(compliance, 2e-4) * level))
+        # what slides within 4e-5 rad is stiffer than gears: as good as rigid, and slow to follow
+        return sliding + (before - sliding) * math.exp(-abs(travel) / max(compliance * level, 4e-5))

@@ -14,7 +14,9 @@ class RateLimit(Effect):
 
     name = "rate_limit"
     equation = "|di/dt| ≤ r"
-    parameters: ClassVar = {"rate": Parameter("1/s", 0.0, math.inf, 200.0, null=math.inf, meaning="r, in A/s or V/s")}
+    parameters: ClassVar = {
+        "rate": Parameter("1/s", 0.0, math.inf, 200.0, null=math.inf, meaning="r, in A/s or V/s", of_command=True)
+    }
     looks_like = "steps of the command come as ramps, small changes come through"
     confused_with = ("current_lag", "saturation")
     source = "thesis section 2.3"

@@ -14,7 +14,9 @@ class Saturation(Effect):
 
     name = "saturation"
     equation = "i = min(max(command, −limit), limit)"
-    parameters: ClassVar = {"limit": Parameter("", 0.0, math.inf, 3.0, null=math.inf, meaning="largest output [A or V]")}
+    parameters: ClassVar = {
+        "limit": Parameter("", 0.0, math.inf, 3.0, null=math.inf, meaning="largest output [A or V]", of_command=True)
+    }
     looks_like = "the answer to large commands is cut off, to small ones right"
     confused_with = ("rate_limit", "current_lag")
 
@@ -22,3 +24,8 @@ class Saturation(Effect):
     def drive(command, limit):
         """Command within ±limit."""
         return min(max(command, -limit), limit)
+
+    @classmethod
+    def starts(cls) -> list[dict[str, float]]:
+        """Limits that cut off the peaks of commands of 5 A, some much, some little: above them there is no slope to follow."""
+        return [{"limit": limit} for limit in (4.5, 4.85, 4.0, 3.5, 3.0, 2.5)]

@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.data import Data, Run, prepare
+from flexarm_env.identify.data import Data, prepare
 from flexarm_env.identify.predict import replay, window_observers, window_replay
 from flexarm_env.identify.preflight import preflight
 from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.refit import Progress
 from flexarm_env.identify.results import Comparison, Replay, Row
+from flexarm_env.identify.run import Run
 
 Floats = NDArray[np.float64]
 

@@ -104,7 +104,7 @@ def effect_coordinates(arm: Arm, name: str, scales: Mapping[str, float], nominal
     Args:
         arm: which has the effect.
         name: of the effect.
-        scales: by unit, how much larger than typical sizes are here.
+        scales: by unit and for "command", how much larger than typical sizes are here.
         nominal: if it has the effect as well, its values are the prior's centre.
     """
     effect = arm.known[name]
@@ -124,7 +124,7 @@ def effect_coordinates(arm: Arm, name: str, scales: Mapping[str, float], nominal
         elif parameter.null == math.inf or (parameter.low > 0.0 and parameter.null is None):
             found.append(Coordinate(path, value, 0.0, 3.0, parameter.low, parameter.high))
         else:
-            scale = (parameter.typical if parameter.typical > 0.0 else 1.0) * scales.get(parameter.unit, 1.0)
+            scale = (parameter.typical if parameter.typical > 0.0 else 1.0) * parameter.scaled_by(scales)
             found.append(Coordinate(path, value, scale, WIDEST, parameter.low, parameter.high))
     return found
 

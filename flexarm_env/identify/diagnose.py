@@ -17,9 +17,10 @@ from flexarm_env.identify.origin import with_origin
 from flexarm_env.identify.preflight import preflight
 from flexarm_env.identify.problem import Score, score
 from flexarm_env.identify.recording import Recording
-from flexarm_env.identify.refit import Progress, best_refit, estimates, with_all
+from flexarm_env.identify.refit import Progress, estimates, with_all
 from flexarm_env.identify.results import Candidate, Diagnosis
 from flexarm_env.identify.search import Search
+from flexarm_env.identify.split import later_notes, refit_and_split
 
 #: A model whose held-out errors in windows and freely replayed end below these is whole, whatever share was removed.
 WHOLE, WHOLE_FREE_RUN = 1.2, 1.5
@@ -47,14 +48,13 @@ def diagnose(
     say = progress or (lambda done, text: None)
     nominal, data = prepare(arm, recordings)
     notes, insufficient = preflight(nominal, data)
-    say(0.02, "replaying the model")
-    before = score(nominal, data)
     if insufficient:
-        return _insufficient(arm, nominal, data, before, notes, began, seed)
+        return _insufficient(arm, nominal, data, score(nominal, data), notes, began, seed)
     say(0.05, "refitting the constants")
     with in_threads(jobs):
-        base = best_refit(nominal, data)
-    first = score(base.arm, data)
+        base, data = refit_and_split(nominal, data)
+    notes += later_notes(data)
+    before, first = score(nominal, data), score(base.arm, data)
     search = Search(nominal, data, jobs, say)
     search.run(base, before, first)
     with in_threads(jobs):

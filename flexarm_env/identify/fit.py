@@ -15,6 +15,7 @@ from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.refit import Progress, best_refit, estimates, with_all
 from flexarm_env.identify.results import Addition, Estimate, Fit
 from flexarm_env.identify.screen import refit_effect
+from flexarm_env.identify.split import refit_and_split
 
 
 def fit(arm: Arm, recordings: Sequence[Recording], progress: Progress | None = None, seed: int = 0, jobs: int = 2) -> Fit:
@@ -73,7 +74,7 @@ def add(
     nominal, data = prepare(arm.without_effect(effect), recordings)
     say(0.05, "refitting the constants")
     with in_threads(jobs):
-        base = best_refit(nominal, data)
+        base, data = refit_and_split(nominal, data)
         say(0.4, f"adding {effect}")
         found = refit_effect(effect, base, nominal, data)
         scores = [score(a, data) for a in (nominal, base.arm, found.arm)]

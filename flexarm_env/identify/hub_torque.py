@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_are
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.data import Data, Run, prepare, torque_scale
+from flexarm_env.identify.data import Data, prepare
 from flexarm_env.identify.load import loaded
 from flexarm_env.identify.recording import Recording
+from flexarm_env.identify.run import Run
+from flexarm_env.identify.scales import torque_scale
 from flexarm_env.linear import INPUTS, LinearArm
 
 Floats = NDArray[np.float64]

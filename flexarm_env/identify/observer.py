@@ -11,14 +11,12 @@ Floats = NDArray[np.float64]
 
 #: Energy that process noise gives every coordinate, over what the torque noise gives the hub.
 SHARE_OF_ALL = 0.05
-#: Drift of a held angle in one sample, over the noise of its sensor, at a torque noise of 1 Nm.
-HELD_DRIFT = 0.05
 DOUBLINGS = 14
 #: A feedback that would let errors grow by more than this in a sample is dropped.
 UNSTABLE = 1.0001
 
 
-def physical_gains(plant: Plant, noise: Floats, torque_noise: float, interval: float) -> Floats:
+def physical_gains(plant: Plant, noise: Floats, torque_noise: float, interval: float, held_drift: float) -> Floats:
     """Return gains (modes, states, signals) from readings' errors to the state [q, q̇, extra].
 
     Args:
@@ -26,10 +24,11 @@ def physical_gains(plant: Plant, noise: Floats, torque_noise: float, interval: f
         noise: (signals,) standard deviation of the readings.
         torque_noise: standard deviation of a torque on the hub, new in each sample [Nm].
         interval: sampling time [s].
+        held_drift: of a held angle in one sample, over the noise of its sensor.
     """
     gains = np.zeros((plant.modes, plant.states, len(noise)))
     for mode in range(plant.modes):
-        gains[mode] = _gain(plant, mode, noise, torque_noise, interval)
+        gains[mode] = _gain(plant, mode, noise, torque_noise, interval, held_drift)
     return gains
 
 
@@ -53,7 +52,9 @@ def modal_gains(plant: Plant, physical: Floats) -> Floats:
     return gains
 
 
-def _process(plant: Plant, mode: int, noise: Floats, torque_noise: float, interval: float) -> tuple[Floats, Floats]:
+def _process(
+    plant: Plant, mode: int, noise: Floats, torque_noise: float, interval: float, held_drift: float = 0.0
+) -> tuple[Floats, Floats]:
     """Return (states, states), what a sample makes of the state, and the covariance that noise adds to it."""
     transition, push = plant.transition(mode, interval)
     model = plant.model
@@ -64,19 +65,18 @@ def _process(plant: Plant, mode: int, noise: Floats, torque_noise: float, interv
     mobility = np.linalg.inv(model.mass)
     mobility[held] = 0.0
     mobility[:, held] = 0.0
-    scale = np.linalg.inv(model.mass)[0, 0]
-    process[size : 2 * size, size : 2 * size] = SHARE_OF_ALL * impulse**2 * scale * mobility
+    hub = np.linalg.inv(model.mass)[0, 0]
+    process[size : 2 * size, size : 2 * size] = SHARE_OF_ALL * impulse**2 * hub * mobility
     process += torque_noise**2 * np.outer(push, push)
     for body in held:
         transition[body, body] = 1.0
-        drift = HELD_DRIFT * min(torque_noise, 1.0) * noise[0]
-        process[body, body] += drift**2
+        process[body, body] += (held_drift * noise[0]) ** 2
     process[2 * size :, 2 * size :] += np.eye(plant.states - 2 * size) * 1e-12
     return transition, process
 
 
-def _gain(plant: Plant, mode: int, noise: Floats, torque_noise: float, interval: float) -> Floats:
-    transition, process = _process(plant, mode, noise, torque_noise, interval)
+def _gain(plant: Plant, mode: int, noise: Floats, torque_noise: float, interval: float, held_drift: float) -> Floats:
+    transition, process = _process(plant, mode, noise, torque_noise, interval, held_drift)
     output = plant.model.output
     covariance = _riccati(transition, output, process, noise)
     seen = output @ covariance @ output.T + np.diag(noise**2)

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.data import WINDOW, Data, Run, place, torque_scale
+from flexarm_env.identify.data import WINDOW, Data
 from flexarm_env.identify.observer import modal_gains, physical_gains
+from flexarm_env.identify.run import Run, place
+from flexarm_env.identify.scales import torque_scale
 from flexarm_env.plant.plant import NO_GAINS, NOT_MEASURED, Plant
 
 Floats = NDArray[np.float64]
 
 #: Torque noise assumed while estimating the states from which windows start, over the rms of the drive's torque.
 WINDOW_LEVELS = (1e-4, 2e-3, 2e-2)
+#: Drift of a held angle in one sample, over the noise of its sensor, at the torque noise that an arm states; at 1 Nm, where it
+#: states none and is of the thesis's size.
+HELD_DRIFT = 0.05
 
 
 def replay(plant: Plant, run: Run, noise: Floats, physical: Floats | None = None) -> Floats:
@@ -67,5 +73,12 @@ def window_observers(arm: Arm, plant: Plant, data: Data, levels: Sequence[float]
     """Return the kernel's gains of the replays that estimate the states from which windows start."""
     scale, own = torque_scale(arm, data.runs), arm.constants["drive"]["torque_noise"]
     noises = sorted({max(level * scale, own) for level in levels})
-    nudged = [modal_gains(plant, physical_gains(plant, data.noise, noise, data.interval)) for noise in noises]
-    return [NO_GAINS, *nudged]
+    return [NO_GAINS, *(modal_gains(plant, observer_gains(arm, plant, data, noise)) for noise in noises)]
+
+
+def observer_gains(arm: Arm, plant: Plant, data: Data, torque_noise: float) -> Floats:
+    """Return the physical gains (modes, states, signals) of a replay that is nudged as a torque noise [Nm] asks for."""
+    # in steps of 64: an arm's size matters here, not how hard it is driven
+    whole = arm.constants["drive"]["torque_noise"] or 64.0 ** round(math.log(data.scales["N*m"], 64.0))
+    held_drift = HELD_DRIFT * min(torque_noise / whole, 1.0)
+    return physical_gains(plant, data.noise, torque_noise, data.interval, held_drift)

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.coordinates import Coordinate, place_values
-from flexarm_env.identify.data import Data, Run
-from flexarm_env.identify.observer import innovation_sigma, physical_gains
-from flexarm_env.identify.predict import replay, window_observers, window_replay
+from flexarm_env.identify.data import Data
+from flexarm_env.identify.observer import innovation_sigma
+from flexarm_env.identify.predict import observer_gains, replay, window_observers, window_replay
+from flexarm_env.identify.run import Run
 from flexarm_env.plant.plant import Plant
 
 Floats = NDArray[np.float64]
@@ -98,7 +99,7 @@ class Problem:
         # the same gains while an arm's numbers are fitted, others for another arm
         key = (payload, tuple(arm.effects), plant.modes, plant.states)
         if key not in self._gains:
-            self._gains[key] = physical_gains(plant, self.data.noise, self.torque_noise, self.data.interval)
+            self._gains[key] = observer_gains(arm, plant, self.data, self.torque_noise)
         return self._gains[key]
 
 
@@ -123,9 +124,8 @@ class Score:
 def score(arm: Arm, data: Data, held_out: bool = True) -> Score:
     """Return the errors of an arm on what was held out, or on what was fitted."""
     plants = data.plants(arm)
-    own = arm.constants["drive"]["torque_noise"]
-    if own > 0.0:
-        return _score_innovations(plants, data, own, held_out)
+    if arm.constants["drive"]["torque_noise"] > 0.0:
+        return _score_innovations(arm, plants, data, held_out)
     observers = {payload: window_observers(arm, plant, data) for payload, plant in plants.items()}
     totals = np.zeros(2)
     count = 0
@@ -160,11 +160,10 @@ def _squares(run: Run, replayed: Floats, rows: NDArray[np.bool_], data: Data) ->
     return float(np.sum(np.nan_to_num(scaled, nan=1e6) ** 2))
 
 
-def _score_innovations(plants: Mapping[float, Plant], data: Data, torque_noise: float, held_out: bool) -> Score:
-    gains, sigmas = (
-        {payload: made(plant, data.noise, torque_noise, data.interval) for payload, plant in plants.items()}
-        for made in (physical_gains, innovation_sigma)
-    )
+def _score_innovations(arm: Arm, plants: Mapping[float, Plant], data: Data, held_out: bool) -> Score:
+    own = arm.constants["drive"]["torque_noise"]
+    gains = {payload: observer_gains(arm, plant, data, own) for payload, plant in plants.items()}
+    sigmas = {payload: innovation_sigma(plant, data.noise, own, data.interval) for payload, plant in plants.items()}
     totals = np.zeros(2)
     count = 0
     for run in data.runs:

@@ -18,10 +18,11 @@ from flexarm_env.identify.coordinates import (
     position,
     reach_at,
 )
-from flexarm_env.identify.data import Data, everything, torque_scale
+from flexarm_env.identify.data import Data, everything
 from flexarm_env.identify.least_squares import Solution, covariance, jacobian, minimise
 from flexarm_env.identify.problem import Problem, rms_by_run, score
 from flexarm_env.identify.results import Estimate
+from flexarm_env.identify.scales import torque_scale
 from flexarm_env.identify.settle import DIFFERENCE, settled
 
 Floats = NDArray[np.float64]

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.coordinates import effect_coordinates, place_values, position, reach_at
-from flexarm_env.identify.data import Data, torque_scale
+from flexarm_env.identify.data import Data
 from flexarm_env.identify.least_squares import jacobian, minimise
 from flexarm_env.identify.problem import Problem
 from flexarm_env.identify.refit import Refit, as_it_is, polish, refit
+from flexarm_env.identify.scales import torque_scale
 
 Floats = NDArray[np.float64]
 
@@ -138,7 +139,7 @@ def _scaled(arm: Arm, effect: str, start: Mapping[str, float], scales: Mapping[s
     """Return a start in the scales of the data, within the bounds."""
     parameters = arm.known[effect].parameters
     values = {key: p.typical for key, p in parameters.items()}
-    values |= {key: value * scales.get(parameters[key].unit, 1.0) for key, value in start.items()}
+    values |= {key: value * parameters[key].scaled_by(scales) for key, value in start.items()}
     return {key: min(max(v, parameters[key].low), parameters[key].high) for key, v in values.items()}
 
 
@@ -170,12 +171,18 @@ def _at_its_size(base: Base, secant: Signature) -> Signature:
     factors = _factors(base, secant)
     if factors == (1.0,) or secant.explained == 0.0:
         return _at_size(base, secant, 1.0)
-    found = []
+    found = [_as_it_is(secant)]
     if secant.factor > 0.0 or min(factors) < 0.0:
         found.append(_at_size(base, secant, float(np.clip(secant.factor, -LARGEST_FACTOR, LARGEST_FACTOR))))
-        if found[0].explained > LINEAR * secant.explained:
-            return found[0]
+        if found[-1].explained > LINEAR * secant.explained:
+            return found[-1]
     return max(found + [_at_size(base, secant, factor) for factor in factors], key=lambda s: s.explained)
+
+
+def _as_it_is(secant: Signature) -> Signature:
+    """Return an effect at the size from which its secant was taken: the parabola along the secant at 1."""
+    factor = secant.factor
+    return Signature(secant.effect, secant.start, secant.explained * (2.0 * factor - 1.0) / factor**2)
 
 
 def _factors(base: Base, signature: Signature) -> tuple[float, ...]:

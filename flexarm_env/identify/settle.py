@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from flexarm_env.identify.common_scale import best_scale, force_powers
 from flexarm_env.identify.coordinates import place_values
-from flexarm_env.identify.data import torque_scale
 from flexarm_env.identify.least_squares import Residual, cost_of, jacobian
 from flexarm_env.identify.problem import Problem
+from flexarm_env.identify.scales import torque_scale
 
 Floats = NDArray[np.float64]
 

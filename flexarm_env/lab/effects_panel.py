@@ -66,7 +66,7 @@ class EffectsPanel:
 
     def _slider(self, name: str, effect: type[Effect], key: str) -> None:
         parameter = effect.parameters[key]
-        factor = 1.0 if self.session.live is None else self.session.live.data.scales.get(parameter.unit, 1.0)
+        factor = 1.0 if self.session.live is None else parameter.scaled_by(self.session.live.data.scales)
         value = self.session.draft.effects[name][key]
         scale = scale_of(parameter, value, parameter.typical * factor)
         unit = words.plain_unit(parameter.unit)

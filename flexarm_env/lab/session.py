@@ -118,7 +118,7 @@ class Session:
             return dict(self.arm.effects[effect])
         scales = {} if self.live is None else self.live.data.scales
         known = self.draft.known[effect].parameters
-        sizes = {key: p.typical * scales.get(p.unit, 1.0) for key, p in known.items()}
+        sizes = {key: p.typical * p.scaled_by(scales) for key, p in known.items()}
         return {key: min(max(value, known[key].low), known[key].high) for key, value in sizes.items()}
 
     def drag(self, effect: str, parameter: str, value: float) -> None:

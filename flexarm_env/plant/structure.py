@@ -17,12 +17,12 @@ COMMAND, HUB_TORQUE, MOTOR_TORQUE, ONE, GEAR_SIDE, HELD_HUB, HELD_MOTOR = range(
 
 #: What arms of one kind have in common.
 WHOLE = ("elements", "sensors")
-#: Stiffness [Nm/rad] of gears that touch, where backlash asks for a motor of its own but no
-#: compliance is given: stiff enough that windup stays below what a pot resolves.
-GEAR_STIFFNESS = 4000.0
-#: Gears that give way less than this [rad/Nm] are rigid; so is a beam's root that turns by less than this share of what the beam
-#: itself does (length over bending stiffness): its undamped mode is too fast to be seen, and costs fifty times a replay.
-LEAST_COMPLIANCE, LEAST_ROOT_SHARE = 1e-7, 1e-3
+#: How fast a motor swings on gears that touch and whose hub is held [rad/s]: where backlash asks for a motor of its own but no
+#: compliance is given, stiff enough that windup stays below what a pot resolves; and on gears that are as good as rigid.
+STIFF_GEARS, RIGID_GEARS = 960.0, 48e3
+#: A beam's root that turns by less than this share of what the beam itself does (length over bending stiffness) is rigid: its
+#: undamped mode is too fast to be seen, and costs fifty times a replay.
+LEAST_ROOT_SHARE = 1e-3
 
 
 def exceeds(quantity: float | Matrix, limit: float) -> bool:
@@ -72,7 +72,17 @@ class Structure:
     @property
     def separate_motor(self) -> bool:
         """Whether motor and hub are two bodies."""
-        return exceeds(self.gear_compliance, LEAST_COMPLIANCE) or exceeds(self.gear_gap, 0.0)
+        return self.soft_gears or exceeds(self.gear_gap, 0.0)
+
+    @property
+    def soft_gears(self) -> bool:
+        """Whether the gears wind up."""
+        return exceeds(self.gear_compliance * self._motor_side, 1.0 / RIGID_GEARS**2)
+
+    @property
+    def _motor_side(self) -> float:
+        """Inertia of the motor, arm side [kg m²]."""
+        return self.gear_ratio**2 * self.motor_inertia
 
     @property
     def soft_root(self) -> bool:
@@ -82,7 +92,7 @@ class Structure:
     @property
     def gear_stiffness(self) -> float:
         """Stiffness of the touching gears, arm side [Nm/rad]."""
-        return 1.0 / self.gear_compliance if exceeds(self.gear_compliance, LEAST_COMPLIANCE) else GEAR_STIFFNESS
+        return 1.0 / self.gear_compliance if self.soft_gears else STIFF_GEARS**2 * self._motor_side
 
     @property
     def amps_by_command(self) -> float:

@@ -9,9 +9,19 @@ import pytest
 
 from flexarm_env import Arm, simulate
 from flexarm_env.effects import Effect
-from flexarm_env.identify.data import Data, prepare, torque_scale
+from flexarm_env.identify.data import Data, prepare
 from flexarm_env.identify.refit import as_it_is
-from flexarm_env.identify.screen import SCREENING_LEVELS, Base, first_start, screening_base, screening_bases, signatures, sized
+from flexarm_env.identify.scales import torque_scale
+from flexarm_env.identify.screen import (
+    SCREENING_LEVELS,
+    Base,
+    first_start,
+    screening_base,
+    screening_bases,
+    signatures,
+    sized,
+    unexplained,
+)
 from flexarm_env.parameters import Parameter
 
 
@@ -61,6 +71,24 @@ def test_errors_weigh_the_same_from_every_start(arm):
     assert (second.problem.prior == first.problem.prior).all()
     assert second.problem.torque_noise == first.problem.torque_noise
     assert (second.residual != first.residual).any()
+
+
+@pytest.mark.parametrize("share", [0.7, 0.9, 0.96])
+@pytest.mark.parametrize("size", [1.0, 24.0])
+def test_a_limit_below_the_largest_command_is_seen_whatever_the_commands_size(arm, share, size):
+    """The same machine, with an amplifier that is commanded in units so many times smaller."""
+    drive = arm.constants["drive"]
+    values = {"drive.torque_constant": drive["torque_constant"] / size, "drive.limit": drive["limit"] * size}
+    model = arm.with_values(values)
+    largest = max(
+        float(abs(simulate(model, kind, duration=4.0, rate=200.0, seed=3).command).max()) for kind in ("square", "pulse")
+    )
+    machine = model.with_effect("saturation", limit=share * largest)
+    nominal, data = seen_by(machine, model)
+    base = screening_base(as_it_is(nominal, data), data)
+    before, left = (unexplained(base, r) for r in (base.residual, base.problem.residual_of(machine)))
+    most = 1.0 - (left @ left) / (before @ before)
+    assert explained(base, "saturation")[0] > 0.6 * most
 
 
 class Shaped(Effect):

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.data import prepare, torque_scale
+from flexarm_env.identify.data import prepare
 from flexarm_env.identify.observer import innovation_sigma
 from flexarm_env.identify.problem import Problem, score
 from flexarm_env.identify.recording import Recording
+from flexarm_env.identify.scales import torque_scale
 from flexarm_env.identify.screen import SCREENING_LEVELS
 from tests.rig import SIGNALS, simulate
 

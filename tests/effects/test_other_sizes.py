@@ -1,0 +1,83 @@
+"""The same machine in other sizes: heavier and stronger alike, commanded or gaged in other units. The same is said of all."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flexarm_env import Arm, simulate
+from flexarm_env.effects import catalogue
+from flexarm_env.identify.common_scale import force_power
+from flexarm_env.identify.data import prepare
+from flexarm_env.identify.refit import as_it_is
+from flexarm_env.identify.screen import candidates, screening_base, signatures, starts_of
+
+#: A power of two, so that no digit changes.
+FACTOR = 64.0
+NAMES = [name for name in catalogue() if catalogue()[name].fitted]
+
+
+def paths(arm: Arm) -> list[str]:
+    """Every value of an arm."""
+    found = [f"{section}.{key}" for section, table in arm.constants.items() for key in table]
+    found += [f"sensors.{signal}.{key}" for signal, table in arm.sensors.items() for key in table]
+    found += [f"effects.{name}.{key}" for name, table in arm.effects.items() for key in table]
+    return [path for path in found if math.isfinite(arm.value(path))]
+
+
+def heavier(arm: Arm) -> Arm:
+    """Return the arm with all forces, masses and stiffness larger, and strain gages as much less sensitive."""
+    return arm.with_values({p: arm.value(p) * FACTOR ** force_power(arm.parameter(p).unit) for p in paths(arm)})
+
+
+def commanded_in_other_units(arm: Arm) -> Arm:
+    """Return the arm with an amplifier whose commands are larger for the same torque."""
+    larger = [p for p in paths(arm) if arm.parameter(p).of_command or p == "drive.limit"]
+    constant = arm.constants["drive"]["torque_constant"] / FACTOR
+    return arm.with_values({p: arm.value(p) * FACTOR for p in larger} | {"drive.torque_constant": constant})
+
+
+def gaged_in_other_units(arm: Arm) -> Arm:
+    """Return the arm with strain gages that show more volts for the same strain."""
+    volts = [p for p in paths(arm) if p.startswith(("sensors.strain", "effects")) and arm.parameter(p).unit.startswith("V")]
+    return arm.with_values({p: arm.value(p) * FACTOR for p in volts if not arm.parameter(p).of_command})
+
+
+@pytest.fixture(scope="module", params=["thesis-fem", "thesis"])
+def arm(request) -> Arm:
+    """With gears that give way, and with rigid ones."""
+    thesis = Arm.load(request.param)
+    return replace(thesis, sensors={**thesis.sensors, "tip_deflection": {**thesis.sensors["arm_angle"], "noise": 1e-3}})
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_it_moves_as_a_lighter_one_does(arm, name):
+    machine = arm if name in arm.effects else arm.with_effect(name)
+    one, other = (simulate(a, "square", duration=2.0, rate=200.0, seed=1) for a in (machine, heavier(machine)))
+    assert np.array_equal(one.command, other.command)
+    for signal, readings in one.signals.items():
+        assert other.signals[signal] == pytest.approx(readings, abs=1e-6)
+
+
+@pytest.mark.parametrize("resized", [heavier, commanded_in_other_units, gaged_in_other_units])
+def test_effects_explain_what_they_do_at_the_thesis_s_size(arm, resized: Callable[[Arm], Arm]):
+    machine = arm.with_effect("constant_torque", torque=0.02)
+    found = []
+    for model, hidden in ((arm, machine), (resized(arm), resized(machine))):
+        nominal, data = prepare(model, [simulate(hidden, kind, duration=3.0, rate=200.0, seed=3) for kind in ("square", "pulse")])
+        base = screening_base(as_it_is(nominal, data), data)
+        names = [n for n in candidates(nominal) if model.known[n].fitted]
+        starts = {n: [nominal.with_effect(n, **s) for s in starts_of(base, n)] for n in names}
+        found.append((starts, {n: sum(s.explained for s in signatures(base, n)) for n in names}))
+    (starts, explained), (other_starts, other_explained) = found
+    assert len(explained) > 20
+    assert max(explained.values()) > 0.02
+    for name, arms in starts.items():
+        for one, other in zip(arms, other_starts[name], strict=True):
+            for key, value in resized(one).effects[name].items():
+                assert other.effects[name][key] == pytest.approx(value, rel=1e-9), f"{name}.{key}"
+        assert other_explained[name] == pytest.approx(explained[name], abs=1e-3), name
