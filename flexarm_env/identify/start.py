@@ -83,7 +83,7 @@ def _hub(time: Floats, measured: Floats, signals: list[str], noise: Floats) -> t
         tach = signals.index("motor_speed")
         leaves |= np.abs(measured[:, tach]) > SIGNIFICANT * noise[tach]
         turns = abs(measured[:3, tach].mean()) > SIGNIFICANT * noise[tach]
-        rests = bool(np.all(np.delete(np.abs(measured[0]) < RESTS * noise, column)))
+        rests = bool(abs(measured[0, tach]) < RESTS * noise[tach])
     still = int(np.argmax(leaves)) if leaves.any() else len(angle)
     count = min(len(angle), FIRST_SAMPLES)
     if still < count and not rests:  # curved, since an arm that is driven at once moves too
@@ -122,12 +122,13 @@ def place_at_start(plant: Plant, start: Start, command: Floats, intervals: Float
     basis = [*(hub if start.moving else []), *(modes[0] if modes else [])]
     if basis:
         stretch = _Stretch(plant, command[: start.samples], intervals[: start.samples], measured[: start.samples], noise, before)
-        state, sizes = stretch.fit(state, np.array(basis), np.zeros(len(basis)))
+        fitted, sizes = stretch.fit(state, np.array(basis), np.zeros(len(basis)))
         if len(modes) > 1:
             least = max(float(np.linalg.norm(sizes[-2:])), 1e-12)
             faster = np.concatenate(modes[1:])
             weights = np.array([0.0] * len(basis) + [1.0 / (FASTER_MODES * least)] * len(faster))
-            state, _ = stretch.fit(state, np.array([*basis, *faster]), weights)
+            fitted, _ = stretch.fit(fitted, np.array([*basis, *faster]), weights)
+        state = stretch.likelier(start.angle * hub[0], fitted)
     plant.place(state, before)
 
 
@@ -165,6 +166,11 @@ class _Stretch:
         self.plant.place(state, self.before)
         readings = self.plant.replay(self.command, self.intervals, NO_GAINS, NOT_MEASURED)
         return np.nan_to_num((readings - self.measured) / self.sigma, nan=1e6, posinf=1e6, neginf=-1e6).ravel()
+
+    def likelier(self, rest: Floats, fitted: Floats) -> Floats:
+        """Return the state at rest unless the fitted one meets the stretch better by more than chance: gages may have offsets."""
+        left, best = (float(np.sum(self.residual(state) ** 2)) for state in (rest, fitted))
+        return fitted if left - best > SIGNIFICANT**2 * max(1.0, best / self.measured.size) else rest
 
     def fit(self, state: Floats, basis: Floats, weights: Floats) -> tuple[Floats, Floats]:
         """Return the state moved along a basis (directions, states) to meet the stretch best, and by how much (directions,).

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from flexarm_env import Arm, Recording, compare, simulate
+from flexarm_env.identify.data import prepare
+from flexarm_env.identify.run import place
 from flexarm_env.identify.start import find_start
 from flexarm_env.thesis.arms import motor_alone
 
@@ -56,6 +58,21 @@ def test_an_offset_of_a_gage_is_no_vibration() -> None:
     assert start.angle == pytest.approx(0.5, abs=1e-3)
     assert not start.moving
     assert not start.vibrating
+
+
+@pytest.mark.parametrize("signals", [SIGNALS, [s for s in SIGNALS if s != "motor_speed"]])
+@pytest.mark.parametrize("offset", [0.05, 0.3])
+def test_an_offset_of_a_gage_is_no_motion_of_an_arm_that_is_driven_at_once(offset: float, signals: list[str]) -> None:
+    times = 0.002 * np.arange(1500)
+    push = Recording.from_arrays("push", times, "current", np.where(times < 0.5, -2.0, 1.0), {}, measured=False)
+    offsets = dict.fromkeys(SIGNALS, 0.0) | {"strain_mid": offset}
+    arm = Arm.load("thesis").with_effect("sensor_offset", **offsets)
+    nominal, data = prepare(arm, [cut(simulate(arm, push, seed=1), 0.0, signals)])
+    (run,) = data.runs
+    assert not run.start.moving
+    plant = data.plants(nominal)[run.payload]
+    place(plant, run, data.noise)
+    assert not np.any(plant.physical())
 
 
 @pytest.mark.parametrize(("effect", "value"), [("input_delay", {"delay": 0.003}), ("rate_limit", {"rate": 300.0})])
