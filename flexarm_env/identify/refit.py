@@ -31,7 +31,7 @@ Progress = Callable[[float, str], None]
 #: Process noise of the levels that a fit goes through, over the rms of the drive's torque.
 LEVELS = (0.03, 0.003, 0.0003)
 #: A refit whose error on the fitted part is below this is done.
-WELL = 1.1
+WELL = 1.02
 #: Error in windows above which a model is far off, how often one that stays so is refitted once more, and what counts as near.
 FAR_OFF, MOST_AGAIN, NEAR = 3.0, 4, (1.03, 1.4)
 #: Relative decrease of the cost at which a level is left, and at which the last one is.

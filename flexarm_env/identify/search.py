@@ -83,14 +83,7 @@ class Search:
             self._rank_screened(trials)
         if enough:
             return False
-        found = self._refit_best(trials, done + 0.5 * share, 0.1 * share)
-        best = min((h.score.windows for h in found), default=np.inf)
-        if is_lost(best, self.best) and not self.accepted:  # a second effect's fits take minutes, with the first in the arm
-            tried = [h.effects[0] for h in found]
-            found += self.fits.with_all_constants(self.found, trials, tried, done + 0.6 * share, 0.2 * share)
-        offset = OFFSET not in self.found.arm.effects
-        if offset and found and not any(self.rules.is_enough(h.score) for h in found):
-            found += self.fits.with_offset(found, done + 0.8 * share, 0.2 * share)
+        found = self._hypotheses(trials, done, share)
         if self.accepted:
             self._go_on()
         if not found:
@@ -103,6 +96,33 @@ class Search:
                 self._remember(hypothesis.effects[0], gain, hypothesis.refit)
         possible = [h for h in found if not at_bound(h)]
         return bool(possible) and self._accept(possible)
+
+    def _hypotheses(self, trials: list[Trial], done: float, share: float) -> list[Hypothesis]:
+        """Refit with the candidates that promise most; where none comes near, with others from constants that are not bent."""
+        found = self._refit_best(trials, done + 0.6 * share, 0.1 * share)
+        if self._is_lost(found) and (self.accepted or not self._from_nominal()):
+            unmoved = as_it_is(with_effects_of(self.found.arm, self.nominal), self.data)
+            others = self.fits.screen([unmoved], done + 0.6 * share, 0.1 * share)
+            found = self._best_of_each(found + self._refit_best(others, done + 0.7 * share, 0.1 * share))
+        if self._is_lost(found) and not self.accepted:  # a second effect's fits take minutes, with the first in the arm
+            tried = [h.effects[0] for h in found]
+            found += self.fits.with_all_constants(self.found, trials, tried, done + 0.7 * share, 0.1 * share)
+        offset = OFFSET not in self.found.arm.effects
+        if offset and found and not any(self.rules.is_enough(h.score) for h in found):
+            found += self.fits.with_offset(found, done + 0.8 * share, 0.2 * share)
+        return found
+
+    def _best_of_each(self, found: list[Hypothesis]) -> list[Hypothesis]:
+        """Return the better of those that say the same."""
+        if not found:
+            return []
+        measure = self.rules.measure_of([h.score for h in found])
+        best = {h.effects: h for h in sorted(found, key=lambda h: -measure(h.score))}
+        return list(best.values())
+
+    def _is_lost(self, found: Sequence[Hypothesis]) -> bool:
+        """Whether none of the hypotheses comes near."""
+        return is_lost(min((h.score.windows for h in found), default=np.inf), self.best)
 
     def _refit_best(self, trials: list[Trial], done: float, share: float) -> list[Hypothesis]:
         """Refit with the candidates that lower the cost most."""
@@ -186,11 +206,18 @@ class Search:
 
         A refit that cannot explain the data bends the constants out of shape, and an effect tried from there fails.
         """
-        helped = excess(self.first.windows) / excess(self.before.windows)
-        if self.accepted or helped < REFIT_HELPS:
+        if self.accepted or not self._from_nominal():
             return [self.found]
         unmoved = as_it_is(self.nominal, self.data)
-        return [unmoved] if helped > REFIT_FAILS else [self.found, unmoved]
+        return [unmoved] if self._helped() > REFIT_FAILS else [self.found, unmoved]
+
+    def _from_nominal(self) -> bool:
+        """Whether effects are tried from the nominal constants, too, before anything is lost."""
+        return self._helped() >= REFIT_HELPS
+
+    def _helped(self) -> float:
+        """Return the share of the excess error that the refit of the constants leaves."""
+        return excess(self.first.windows) / excess(self.before.windows)
 
     def _drop_useless(self) -> None:
         """Take out an effect that the later ones have made needless."""
