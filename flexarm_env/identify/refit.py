@@ -30,6 +30,8 @@ Progress = Callable[[float, str], None]
 
 #: Process noise of the levels that a fit goes through, over the rms of the drive's torque.
 LEVELS = (0.03, 0.003, 0.0003)
+#: And of a fit for which those are too little: with as much feedback, constants that are far off do not hold each other up.
+MORE_LEVELS = (0.3, *LEVELS)
 #: A refit whose error on the fitted part is below this is done.
 WELL = 1.02
 #: Error in windows above which a model is far off, how often one that stays so is refitted once more, and what counts as near.
@@ -110,10 +112,15 @@ def as_it_is(arm: Arm, data: Data) -> Refit:
 
 
 def best_refit(nominal: Arm, data: Data) -> Refit:
-    """Refit the constants; where they were right already, so that nothing is gained, stay near them."""
+    """Refit the constants; where that ends far off, through more levels too; where nothing is gained, stay near them."""
     before = score(nominal, data, held_out=False)
     found = refit(nominal, nominal, data)
-    return found if score(found.arm, data, held_out=False).windows <= before.windows else refit(nominal, nominal, data, ())
+    after = score(found.arm, data, held_out=False)
+    if after.windows > NEAR[1]:
+        other = refit(nominal, nominal, data, MORE_LEVELS)
+        then = score(other.arm, data, held_out=False)
+        found, after = (other, then) if then.windows < after.windows else (found, after)
+    return found if after.windows <= before.windows else refit(nominal, nominal, data, ())
 
 
 def polish(found: Refit, nominal: Arm, data: Data) -> Refit:
@@ -145,7 +152,7 @@ def or_from_nominal(found: Refit, nominal: Arm, data: Data) -> Refit:
     now = score(found.arm, data, held_out=False)
     if now.windows < WELL:
         return found
-    other = refit(with_effects_of(found.arm, nominal), nominal, data)
+    other = refit(with_effects_of(found.arm, nominal), nominal, data, MORE_LEVELS)
     then = score(other.arm, data, held_out=False)
     return other if then.windows * then.free_run < now.windows * now.free_run else found
 

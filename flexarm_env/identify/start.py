@@ -90,8 +90,9 @@ def _hub(time: Floats, measured: Floats, signals: list[str], noise: Floats) -> t
         fit, spread = np.polyfit(time[:count], angle[:count], 2, cov="unscaled")
         if turns or abs(fit[1]) > SIGNIFICANT * sigma * np.sqrt(spread[1, 1]):
             return float(fit[2]), float(fit[1]), 0
-    at_zero = abs(angle[:3].mean()) < 4.0 * sigma
-    return 0.0 if at_zero else float(angle[: max(still // 2, 3)].mean()), 0.0, still
+    before = max(still // 2, 1)
+    at_zero = abs(angle[: min(before, 3)].mean()) < 4.0 * sigma
+    return 0.0 if at_zero else float(angle[:before].mean()), 0.0, still
 
 
 def _speed_alone(measured: Floats, signals: list[str], noise: Floats) -> float:
