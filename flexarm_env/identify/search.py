@@ -10,14 +10,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.acceptance import Acceptance, is_lost, stays_lost
 from flexarm_env.identify.data import Data
 from flexarm_env.identify.fits import Fits
-from flexarm_env.identify.hypothesis import (
-    OFFSET,
-    Hypothesis,
-    at_bound,
-    excess,
-    in_windows,
-    judged,
-)
+from flexarm_env.identify.hypothesis import OFFSET, Hypothesis, at_bound, excess, in_windows, judged
 from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.problem import Score, score
 from flexarm_env.identify.refit import FAR_OFF, Progress, Refit, as_it_is, polish, refit, with_effects_of
@@ -100,7 +93,7 @@ class Search:
     def _hypotheses(self, trials: list[Trial], done: float, share: float) -> list[Hypothesis]:
         """Refit with the candidates that promise most; where none comes near, with others from constants that are not bent."""
         found = self._refit_best(trials, done + 0.6 * share, 0.1 * share)
-        if self._is_lost(found) and (self.accepted or not self._from_nominal()):
+        if self._is_lost(found) and (self.accepted or not self._refit_did_little()):
             unmoved = as_it_is(with_effects_of(self.found.arm, self.nominal), self.data)
             others = self.fits.screen([unmoved], done + 0.6 * share, 0.1 * share)
             found = self._best_of_each(found + self._refit_best(others, done + 0.7 * share, 0.1 * share))
@@ -206,13 +199,13 @@ class Search:
 
         A refit that cannot explain the data bends the constants out of shape, and an effect tried from there fails.
         """
-        if self.accepted or not self._from_nominal():
+        if self.accepted or not self._refit_did_little():
             return [self.found]
         unmoved = as_it_is(self.nominal, self.data)
         return [unmoved] if self._helped() > REFIT_FAILS else [self.found, unmoved]
 
-    def _from_nominal(self) -> bool:
-        """Whether effects are tried from the nominal constants, too, before anything is lost."""
+    def _refit_did_little(self) -> bool:
+        """Whether the refit of the constants did so little that effects are tried from the nominal ones at once."""
         return self._helped() >= REFIT_HELPS
 
     def _helped(self) -> float:

@@ -59,11 +59,8 @@ def held_out_later(found: Arm, data: Data) -> Data:
         replayed = window_replay(plants[run.payload], run, observers[run.payload], data.noise, data.interval)
         errors = np.nan_to_num((run.measured - replayed) / data.noise, nan=1e6)
         runs.append(_until(run, _shown(np.mean(errors**2, axis=1) - 1.0)))
-    return (
-        data
-        if all(new.train.sum() == run.train.sum() for new, run in zip(runs, data.runs, strict=True))
-        else replace(data, runs=runs)
-    )
+    unchanged = all(new.train.sum() == run.train.sum() for new, run in zip(runs, data.runs, strict=True))
+    return data if unchanged else replace(data, runs=runs)
 
 
 def _shown(excesses: np.ndarray) -> float:
