@@ -25,3 +25,9 @@ class RateLimit(Effect):
     def drive(command, previous, interval, rate):
         """The command, at most r·interval from the one before."""
         return min(max(command, previous - rate * interval), previous + rate * interval)
+
+    @staticmethod
+    def ramp(command, previous, interval, rate):
+        """The mean over the sample: a ramp at the rate, then the command."""
+        change = command - previous
+        return command if change == 0.0 else command - change * abs(change) / (2.0 * rate * interval)

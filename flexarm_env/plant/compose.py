@@ -33,7 +33,7 @@ from flexarm_env.effects.base import PORT_ARGUMENTS
 from flexarm_env.files import write_whole
 
 #: What a port's switch returns where no law is active.
-DEFAULTS = {"factor": "1.0", "presliding": "level", "drive": "command", "sensor": "reading"}
+DEFAULTS = {"factor": "1.0", "presliding": "level", "drive": "command", "ramp": "command", "sensor": "reading"}
 
 #: What the kernels' annotations stand for. Without a signature numba compiles a kernel for every literal it is given.
 TYPES = {

@@ -7,7 +7,7 @@ import math
 from numba import njit
 
 from flexarm_env.plant.glide import glide
-from flexarm_env.plant.laws import drive_law
+from flexarm_env.plant.laws import drive_law, ramp_law
 from flexarm_env.plant.layout import (
     BODIES,
     COMMAND,
@@ -20,6 +20,7 @@ from flexarm_env.plant.layout import (
     LATE_SUBSTEPS,
     MODE,
     POINTS,
+    RAMP_LAWS,
     TORQUE_LAWS,
     VARYING,
     Numbers,
@@ -38,11 +39,14 @@ def scratch_size(n: Places) -> int:
 
 @njit(forceinline=True)
 def let_through(d: Numbers, n: Places, s: Numbers, command: float) -> float:
-    """Return what the drive makes of a command, and remember it."""
-    place = n[DRIVE_LAWS]
+    """Return what the drive makes of a command, as its mean over the sample, and remember what it ends at."""
+    place, before = n[DRIVE_LAWS], s[COMMAND]
     for j in range(n[place]):
-        command = drive_law(n[place + 1 + 2 * j], command, s[COMMAND], d[INTERVAL], d, n[place + 2 + 2 * j])
+        command = drive_law(n[place + 1 + 2 * j], command, before, d[INTERVAL], d, n[place + 2 + 2 * j])
     s[COMMAND] = command
+    place = n[RAMP_LAWS]
+    for j in range(n[place]):
+        command = ramp_law(n[place + 1 + 2 * j], command, before, d[INTERVAL], d, n[place + 2 + 2 * j])
     return command
 
 

@@ -52,6 +52,12 @@ def drive_law(kind, command, previous, interval, d, k):
 
 
 @njit
+def ramp_law(kind, command, previous, interval, d, k):
+    """Mean command over a sample while effect `kind` takes it from the one before to this one."""
+    return command
+
+
+@njit
 def sensor_law(kind, reading, angle, motor_angle, time, d, k):
     """Reading that effect `kind` makes of one without it."""
     return reading

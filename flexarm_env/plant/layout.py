@@ -19,8 +19,8 @@ C0, C1, RESPONSES, PHYSICAL, MODAL, FORCING, FORCE_COLUMNS, SPEED, SPEED_WEIGHT,
 WINDUP, WINDUP_WEIGHT, HOLD, HOLD_WEIGHT, HOLD_DRIVERS, HOLD_FORCES, DRAG_VELOCITY = range(24, 31)
 OUTPUT, OUTPUT_DRIVERS = 31, 32
 FRICTION_LAWS, TORQUE_LAWS, DRAG_LAWS, DRIVE_LAWS, PARAMETERS, GLIDES, GLIDE, REACH = range(33, 41)
-MESH, MESH_WEIGHT, SENSOR_LAWS, FACTOR_LAWS, PRESLIDING_LAWS, WEIGHT_LAWS = range(41, 47)
-COUNTS = 47
+MESH, MESH_WEIGHT, SENSOR_LAWS, FACTOR_LAWS, PRESLIDING_LAWS, WEIGHT_LAWS, RAMP_LAWS = range(41, 48)
+COUNTS = 48
 
 # --- one block's numbers in GLIDE, all that a step without events needs: C, S, R₀, S + c₁ R₀, c₀, c₁, how much its
 # amplitude bends the tested row, that row's two numbers, its forcing by command, hub torque, 1, held hub, two each

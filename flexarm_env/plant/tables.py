@@ -28,6 +28,7 @@ LAW_LISTS = {
     "weight": at.WEIGHT_LAWS,
     "drag": at.DRAG_LAWS,
     "drive": at.DRIVE_LAWS,
+    "ramp": at.RAMP_LAWS,
     "sensor": at.SENSOR_LAWS,
 }
 
