@@ -24,7 +24,7 @@ thesis: $(PLOTS) ## check the thesis's claims and draw its figures again in resu
 	$(BIN)/flexarm thesis
 
 test: $(DEV) ## run the tests; SLOW=1 adds the slow ones, after the others
-	$(BIN)/python -m pytest $(if $(SLOW),-m "slow or not slow")
+	$(BIN)/python -m pytest -n auto --maxprocesses 8 --dist worksteal $(if $(SLOW),-m "slow or not slow")
 
 lint: $(DEV) ## check style, format and types
 	$(BIN)/ruff check .

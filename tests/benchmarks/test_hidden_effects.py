@@ -135,7 +135,7 @@ def test_sindy_finds_what_acts_on_the_hub_of_an_arm_that_is_right_otherwise(name
 @pytest.mark.slow
 def test_stepwise_adds_until_the_criterion_rises_and_keeps_its_first_step():
     arm = Arm.load("thesis")
-    runs = [simulate(arm.with_effect("cable_stiffness", stiffness=0.3, rest_angle=0.0), "square", seed=1)]
+    runs = [simulate(arm.with_effect("cable_stiffness", stiffness=0.3, rest_angle=0.0), "pulse", seed=1)]
     found = stepwise(arm, runs)
     assert found["effects"][0] == "cable_stiffness"
     first = best_fit_wins({"case": "its own", "found": found, "cpu_seconds": 1000.0})
