@@ -20,7 +20,7 @@ from flexarm_env.identify.coordinates import (
 )
 from flexarm_env.identify.data import Data, everything
 from flexarm_env.identify.least_squares import Solution, covariance, jacobian, minimise
-from flexarm_env.identify.problem import Problem, rms_by_run, score
+from flexarm_env.identify.problem import Problem, Score, rms_by_run, score
 from flexarm_env.identify.results import Estimate
 from flexarm_env.identify.scales import torque_scale
 from flexarm_env.identify.settle import DIFFERENCE, settled
@@ -30,7 +30,7 @@ Progress = Callable[[float, str], None]
 
 #: Process noise of the levels that a fit goes through, over the rms of the drive's torque.
 LEVELS = (0.03, 0.003, 0.0003)
-#: And of a fit for which those are too little: with as much feedback, constants that are far off do not hold each other up.
+#: And of one for which those are too few.
 MORE_LEVELS = (0.3, *LEVELS)
 #: A refit whose error on the fitted part is below this is done.
 WELL = 1.02
@@ -112,15 +112,25 @@ def as_it_is(arm: Arm, data: Data) -> Refit:
 
 
 def best_refit(nominal: Arm, data: Data) -> Refit:
-    """Refit the constants; where that ends far off, through more levels too; where nothing is gained, stay near them."""
+    """Refit the constants; where they were right already, so that nothing is gained, stay near them."""
     before = score(nominal, data, held_out=False)
-    found = refit(nominal, nominal, data)
-    after = score(found.arm, data, held_out=False)
-    if after.windows > NEAR[1]:
-        other = refit(nominal, nominal, data, MORE_LEVELS)
-        then = score(other.arm, data, held_out=False)
-        found, after = (other, then) if then.windows < after.windows else (found, after)
+    found, after = refit_from(nominal, nominal, data)
     return found if after.windows <= before.windows else refit(nominal, nominal, data, ())
+
+
+def refit_from(arm: Arm, nominal: Arm, data: Data) -> tuple[Refit, Score]:
+    """Return a refit that begins with this arm, and its error on the fitted part.
+
+    Where a model ends off but not so far that something must be missing, constants may hold each other up. With more feedback at
+    first they do not; the refit that ends at the lower error is returned.
+    """
+    found = refit(arm, nominal, data)
+    after = score(found.arm, data, held_out=False)
+    if not NEAR[1] < after.windows < FAR_OFF:
+        return found, after
+    other = refit(arm, nominal, data, MORE_LEVELS)
+    then = score(other.arm, data, held_out=False)
+    return (other, then) if then.windows < after.windows else (found, after)
 
 
 def polish(found: Refit, nominal: Arm, data: Data) -> Refit:
@@ -152,8 +162,7 @@ def or_from_nominal(found: Refit, nominal: Arm, data: Data) -> Refit:
     now = score(found.arm, data, held_out=False)
     if now.windows < WELL:
         return found
-    other = refit(with_effects_of(found.arm, nominal), nominal, data, MORE_LEVELS)
-    then = score(other.arm, data, held_out=False)
+    other, then = refit_from(with_effects_of(found.arm, nominal), nominal, data)
     return other if then.windows * then.free_run < now.windows * now.free_run else found
 
 
