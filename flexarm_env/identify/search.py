@@ -7,26 +7,18 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.acceptance import Acceptance, is_lost, stays_lost
+from flexarm_env.identify.acceptance import Acceptance, stays_lost
 from flexarm_env.identify.data import Data
 from flexarm_env.identify.fits import Fits
 from flexarm_env.identify.hypothesis import OFFSET, Hypothesis, at_bound, excess, in_windows, judged
 from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.problem import Score, score
-from flexarm_env.identify.refit import FAR_OFF, Progress, Refit, as_it_is, polish, refit, with_effects_of
+from flexarm_env.identify.proposals import Proposals
+from flexarm_env.identify.refit import FAR_OFF, Progress, Refit, polish, refit, with_effects_of
 from flexarm_env.identify.rivals import SAME_GAIN, Place, in_place_of, order_of, same
 from flexarm_env.identify.screen import Trial
 
-#: How many candidates are refitted in full in each round, and only those that lower the cost of the screening to the first
-#: share, by no less than the second of what the best does.
-FINALISTS = 4
-LEAST_CHANGE, LEAST_OF_BEST = 0.97, 0.3
-#: Those that do this share of what the best does are refitted first, the others only if none of them is enough.
-NEAR_BEST = 0.6
 MOST_EFFECTS = 3
-#: A refit of the constants that leaves less than the first share of the excess error is trusted as a start; one that
-#: leaves more than the second is not.
-REFIT_HELPS, REFIT_FAILS = 0.2, 0.7
 #: An error above this may be for a rival to remove.
 AT_NOISE = 1.01
 
@@ -45,8 +37,9 @@ class Search:
 
     def run(self, base: Refit, before: Score, first: Score) -> None:
         """Search from the refitted constants, given the errors before and after the refit."""
-        self.base, self.before, self.first = base, before, first
+        self.base, self.first = base, first
         self.rules = Acceptance(first, self.noisy)
+        self.proposals = Proposals(self.fits, self.rules, excess(first.windows) / excess(before.windows))
         self.found, self.best = base, first
         done = 0.1
         while len(self.accepted) < MOST_EFFECTS and self._add_one(done, 0.3):
@@ -71,12 +64,13 @@ class Search:
         enough = self.rules.is_enough(self.best)
         if enough and self.ranking:
             return False
-        trials = self.fits.screen(self._starts(), done, 0.6 * share)
+        is_first = not self.accepted
+        trials = self.proposals.screen(self.found, is_first, done, 0.6 * share)
         if not self.ranking:
             self._rank_screened(trials)
         if enough:
             return False
-        found = self._hypotheses(trials, done, share)
+        found = self.proposals.refit(trials, self.found, self.best, is_first, done + 0.6 * share, 0.4 * share)
         if self.accepted:
             self._go_on()
         if not found:
@@ -89,46 +83,6 @@ class Search:
                 self._remember(hypothesis.effects[0], gain, hypothesis.refit)
         possible = [h for h in found if not at_bound(h)]
         return bool(possible) and self._accept(possible)
-
-    def _hypotheses(self, trials: list[Trial], done: float, share: float) -> list[Hypothesis]:
-        """Refit with the candidates that promise most; where none comes near, with others from constants that are not bent."""
-        found = self._refit_best(trials, done + 0.6 * share, 0.1 * share)
-        if self._is_lost(found) and (self.accepted or not self._refit_did_little()):
-            unmoved = as_it_is(with_effects_of(self.found.arm, self.nominal), self.data)
-            others = self.fits.screen([unmoved], done + 0.6 * share, 0.1 * share)
-            found = self._best_of_each(found + self._refit_best(others, done + 0.7 * share, 0.1 * share))
-        if self._is_lost(found) and not self.accepted:  # a second effect's fits take minutes, with the first in the arm
-            tried = [h.effects[0] for h in found]
-            found += self.fits.with_all_constants(self.found, trials, tried, done + 0.7 * share, 0.1 * share)
-        offset = OFFSET not in self.found.arm.effects
-        if offset and found and not any(self.rules.is_enough(h.score) for h in found):
-            found += self.fits.with_offset(found, done + 0.8 * share, 0.2 * share)
-        return found
-
-    def _best_of_each(self, found: list[Hypothesis]) -> list[Hypothesis]:
-        """Return the better of those that say the same."""
-        if not found:
-            return []
-        measure = self.rules.measure_of([h.score for h in found])
-        best = {h.effects: h for h in sorted(found, key=lambda h: -measure(h.score))}
-        return list(best.values())
-
-    def _is_lost(self, found: Sequence[Hypothesis]) -> bool:
-        """Whether none of the hypotheses comes near."""
-        return is_lost(min((h.score.windows for h in found), default=np.inf), self.best)
-
-    def _refit_best(self, trials: list[Trial], done: float, share: float) -> list[Hypothesis]:
-        """Refit with the candidates that lower the cost most."""
-        control = next(t for t in trials if not t.effect)
-        lowest = min(t.cost for t in trials)
-        level = min(LEAST_CHANGE * control.cost, control.cost - LEAST_OF_BEST * (control.cost - lowest))
-        near = control.cost - NEAR_BEST * (control.cost - lowest)
-        better = [t for t in trials if t.effect and t.cost < level][:FINALISTS]
-        found: list[Hypothesis] = []
-        for part in ([t for t in better if t.cost <= near], [t for t in better if t.cost > near]):
-            if not any(self.rules.is_enough(h.score) for h in found):
-                found += self.fits.refit_all([(t.effect,) for t in part], [t.arm for t in part], done, share)
-        return found
 
     def _accept(self, found: list[Hypothesis]) -> bool:
         """Take the best hypothesis if it removes enough; the simplest of those that remove nearly as much."""
@@ -193,24 +147,6 @@ class Search:
             if trial.effect:
                 gain = 1.0 - trial.held_out / reference.held_out
                 self.ranking[trial.effect] = (float(np.clip(gain, 0.0, 1.0)), None)
-
-    def _starts(self) -> list[Refit]:
-        """Constants from which candidates are tried: the refitted ones, and the nominal ones where the refit did little.
-
-        A refit that cannot explain the data bends the constants out of shape, and an effect tried from there fails.
-        """
-        if self.accepted or not self._refit_did_little():
-            return [self.found]
-        unmoved = as_it_is(self.nominal, self.data)
-        return [unmoved] if self._helped() > REFIT_FAILS else [self.found, unmoved]
-
-    def _refit_did_little(self) -> bool:
-        """Whether the refit of the constants did so little that effects are tried from the nominal ones at once."""
-        return self._helped() >= REFIT_HELPS
-
-    def _helped(self) -> float:
-        """Return the share of the excess error that the refit of the constants leaves."""
-        return excess(self.first.windows) / excess(self.before.windows)
 
     def _drop_useless(self) -> None:
         """Take out an effect that the later ones have made needless."""
