@@ -10,8 +10,12 @@ from flexarm_env.identify.refit import FAR_OFF
 
 #: A held-out error below this leaves nothing to explain.
 PERFECT = 1.1
+#: A model whose held-out errors in windows and freely replayed end below these is whole, whatever share was removed.
+WHOLE, WHOLE_FREE_RUN = 1.2, 1.5
 #: Least share of the excess error that an effect must remove to be accepted; where a model is far off; and all accepted ones.
 LEAST_GAIN, LEAST_GAIN_FAR_OFF, LEAST_TOTAL_GAIN = 0.25, 0.5, 0.7
+#: Least share that all accepted ones must remove in windows where the model ends near the noise: true effects go all the way.
+LEAST_TOTAL_GAIN_NEAR = 0.95
 #: Excess error, as a variance over the noise's, that an effect must remove at least, and as a share of that of the refitted
 #: constants: what is left of a large error comes from fits that end early, too.
 LEAST_REMOVED, LEAST_OF_FIRST = 0.2, 1e-3
@@ -39,6 +43,18 @@ class Acceptance:
         """Whether one more effect removes enough of the excess error."""
         removed = measure(without) - measure(found)
         return removed >= max(LEAST_GAIN * measure(without), self.least(measure))
+
+    def explains(self, found: Score) -> bool:
+        """Whether what was found leaves nothing to explain, or explains seconds and whole runs alike, as true effects do.
+
+        What imitates another effect often does in only one of the two, or stops short of the noise. Where torque noise is
+        stated, no free run says anything.
+        """
+        share = LEAST_TOTAL_GAIN if found.windows > FAR_OFF else LEAST_TOTAL_GAIN_NEAR
+        errors = [(self.first.windows, found.windows, WHOLE, share)]
+        if not self.noisy:
+            errors.append((self.first.free_run, found.free_run, WHOLE_FREE_RUN, LEAST_TOTAL_GAIN))
+        return all(new <= whole or excess(new) <= (1.0 - least) * excess(old) for old, new, whole, least in errors)
 
 
 def is_lost(best: float, without: Score) -> bool:

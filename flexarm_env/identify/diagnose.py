@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from flexarm_env.arm import Arm, short_name
-from flexarm_env.identify.acceptance import LEAST_REMOVED, LEAST_TOTAL_GAIN, PERFECT
+from flexarm_env.identify.acceptance import LEAST_REMOVED, PERFECT, WHOLE
 from flexarm_env.identify.data import Data, prepare
 from flexarm_env.identify.hiding import could_hide
 from flexarm_env.identify.hypothesis import excess
@@ -18,12 +18,9 @@ from flexarm_env.identify.preflight import preflight
 from flexarm_env.identify.problem import Score, score
 from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.refit import Progress, estimates, with_all
-from flexarm_env.identify.results import Candidate, Diagnosis
+from flexarm_env.identify.results import Candidate, Diagnosis, Estimate
 from flexarm_env.identify.search import Search
 from flexarm_env.identify.split import later_notes, refit_and_split
-
-#: A model whose held-out errors in windows and freely replayed end below these is whole, whatever share was removed.
-WHOLE, WHOLE_FREE_RUN = 1.2, 1.5
 
 
 def diagnose(
@@ -63,24 +60,12 @@ def diagnose(
 
 
 def _verdict(search: Search, before: Score, first: Score) -> str:
-    if search.accepted and _explains(search, first):
+    if search.accepted and search.rules.explains(search.best):
         return "effects"
     if first.windows > WHOLE:
         return "unknown"
     needed = excess(before.windows) > 1.5 * excess(first.windows) and before.windows > PERFECT
     return "parameters" if needed else "nothing_missing"
-
-
-def _explains(search: Search, first: Score) -> bool:
-    """Whether what was found leaves nothing to explain, or explains seconds and whole runs alike, as true effects do.
-
-    What imitates another effect often does in only one of the two. Where torque noise is stated, no free run says anything.
-    """
-    best = search.best
-    errors = [(first.windows, best.windows, WHOLE)]
-    if not search.noisy:
-        errors.append((first.free_run, best.free_run, WHOLE_FREE_RUN))
-    return all(new <= whole or excess(new) <= (1.0 - LEAST_TOTAL_GAIN) * excess(old) for old, new, whole in errors)
 
 
 def _conclude(
@@ -103,18 +88,15 @@ def _conclude(
     values = estimates(final, nominal)
     accepted = search.accepted if named else []
     steps = {name: search.steps[name] for name in accepted}
+    if named and last.windows > WHOLE:
+        rest = f"the corrected model still errs by {last.windows:.3g} times the noise: more is missing, or the noise is larger"
+        notes = [*notes, f"{rest} than the arm file says"]
     corrected = with_origin(arm, final.arm, values, recordings, "diagnose", seed) if verdict != "nothing_missing" else arm
-    ranking = []
-    for name, (gain, found) in sorted(search.ranking.items(), key=lambda item: -item[1][0]):
-        own = values if name in accepted else (estimates(found, nominal) if found else [])
-        own = [e for e in own if e.path.startswith(f"effects.{name}.")]
-        ranking.append(Candidate(name, gain, name in accepted, own))
-    ranking.sort(key=lambda c: accepted.index(c.effect) if c.accepted else len(accepted))
     return Diagnosis(
         verdict=verdict,
         effects=list(accepted),
         equivalent=search.equivalent if named else [],
-        ranking=ranking,
+        ranking=_ranking(search, values, accepted, nominal),
         error={"nominal": before.windows, "refitted": first.windows}
         | {name: s.windows for name, s in steps.items()}
         | {"final": last.windows},
@@ -127,6 +109,16 @@ def _conclude(
         seconds=time.perf_counter() - began,
         seed=seed,
     )
+
+
+def _ranking(search: Search, values: Sequence[Estimate], accepted: Sequence[str], nominal: Arm) -> list[Candidate]:
+    """Return every effect that was tried: the accepted ones in their order, then the others, those that remove most first."""
+    ranking = []
+    for name, (gain, found) in sorted(search.ranking.items(), key=lambda item: -item[1][0]):
+        own = values if name in accepted else (estimates(found, nominal) if found else [])
+        own = [e for e in own if e.path.startswith(f"effects.{name}.")]
+        ranking.append(Candidate(name, gain, name in accepted, own))
+    return sorted(ranking, key=lambda c: accepted.index(c.effect) if c.accepted else len(accepted))
 
 
 def _with_outlook(found: Diagnosis, search: Search, data: Data, say: Progress, jobs: int) -> Diagnosis:
