@@ -56,7 +56,8 @@ def run(
     folder.mkdir(parents=True, exist_ok=True)
     answers = []
     tasks = [delayed(_answer)(case, method, folder) for case in cases]
-    for answer in Parallel(n_jobs=jobs, return_as="generator")(tasks):
+    # Answers that are kept take no time, from which joblib would learn to hand out long cases many at a time.
+    for answer in Parallel(n_jobs=jobs, return_as="generator", batch_size=1)(tasks):
         answers.append(answer)
         say(len(answers), answer)
     return answers
