@@ -17,7 +17,7 @@ PORT_ARGUMENTS: dict[str, tuple[str, ...]] = {
     "weight": ("angle",),
     "drag": ("velocity",),
     "drive": ("command", "previous", "interval"),
-    "ramp": ("command", "previous", "interval"),
+    "ramp": ("command", "previous", "start", "end"),
     "sensor": ("reading", "angle", "motor_angle", "time"),
 }
 
@@ -38,8 +38,8 @@ class Effect:
     - ``weight(…)`` returns the torque about the hub [Nm] of a force on beam and payload in proportion to their mass, from angle.
     - ``drag(…)`` returns a force per length on the beam [N/m], from velocity [m/s].
     - ``drive(…)`` returns the command that gets through [A or V], from command, previous, interval [s].
-    - ``ramp(…)`` returns the mean [A or V] over a sample of a drive that is on its way to that command from previous, where
-      getting there takes a part of the sample, from command, previous, interval [s].
+    - ``ramp(…)`` returns the mean [A or V] over a part of a sample of a drive that is on its way to that command, from command,
+      previous, start and end of the part [s], counted from where it left previous.
     - ``sensor(…)`` returns what each sensor of `reads` shows, in SI units, from reading (without the effect), angle of the hub
       [rad], motor_angle [rad], time [s].
 

@@ -27,7 +27,8 @@ class RateLimit(Effect):
         return min(max(command, previous - rate * interval), previous + rate * interval)
 
     @staticmethod
-    def ramp(command, previous, interval, rate):
-        """The mean over the sample: a ramp at the rate, then the command."""
+    def ramp(command, previous, start, end, rate):
+        """The mean from start to end of a ramp at the rate that began at 0, then the command."""
         change = command - previous
-        return command if change == 0.0 else command - change * abs(change) / (2.0 * rate * interval)
+        short, still_short = max(abs(change) - rate * start, 0.0), max(abs(change) - rate * end, 0.0)
+        return command - math.copysign((short**2 - still_short**2) / (2.0 * rate * (end - start)), change)

@@ -39,14 +39,20 @@ def scratch_size(n: Places) -> int:
 
 @njit(forceinline=True)
 def let_through(d: Numbers, n: Places, s: Numbers, command: float) -> float:
-    """Return what the drive makes of a command, as its mean over the sample, and remember what it ends at."""
+    """Return what the drive makes of a command, and remember it."""
     place, before = n[DRIVE_LAWS], s[COMMAND]
     for j in range(n[place]):
         command = drive_law(n[place + 1 + 2 * j], command, before, d[INTERVAL], d, n[place + 2 + 2 * j])
     s[COMMAND] = command
+    return command
+
+
+@njit(forceinline=True)
+def on_the_way(d: Numbers, n: Places, before: float, command: float, start: float, end: float) -> float:
+    """Return the mean of what a drive gives from start to end [s] after it was told to leave one command for the next."""
     place = n[RAMP_LAWS]
     for j in range(n[place]):
-        command = ramp_law(n[place + 1 + 2 * j], command, before, d[INTERVAL], d, n[place + 2 + 2 * j])
+        command = ramp_law(n[place + 1 + 2 * j], command, before, start, end, d, n[place + 2 + 2 * j])
     return command
 
 
@@ -100,9 +106,10 @@ def control_step(d: Numbers, n: Places, s: Numbers, before: float, command: floa
     for _ in range(n[EARLY_SUBSTEPS]):
         if n[GLIDES] != 1 or not glide(d, n, s, before, d[EARLY_LENGTH], 0, w):
             move(d, n, s, before, d[EARLY_LENGTH], 0, w)
-    for _ in range(n[LATE_SUBSTEPS]):
-        if n[GLIDES] != 1 or not glide(d, n, s, command, d[LATE_LENGTH], 1, w):
-            move(d, n, s, command, d[LATE_LENGTH], 1, w)
+    for j in range(n[LATE_SUBSTEPS]):
+        now = on_the_way(d, n, before, command, j * d[LATE_LENGTH], (j + 1) * d[LATE_LENGTH])
+        if n[GLIDES] != 1 or not glide(d, n, s, now, d[LATE_LENGTH], 1, w):
+            move(d, n, s, now, d[LATE_LENGTH], 1, w)
 
 
 @njit(inline="always")
@@ -115,5 +122,6 @@ def uneven_step(
     if early > 0.0:
         move(d, n, s, before, early, UNTABULATED, w)
     count = max(math.ceil(late / d[LATE_LENGTH] - 1e-9), 1) if late > 0.0 else 0
-    for _ in range(count):
-        move(d, n, s, command, late / count, UNTABULATED, w)
+    for j in range(count):
+        now = on_the_way(d, n, before, command, j * late / count, (j + 1) * late / count)
+        move(d, n, s, now, late / count, UNTABULATED, w)

@@ -52,8 +52,8 @@ def drive_law(kind, command, previous, interval, d, k):
 
 
 @njit
-def ramp_law(kind, command, previous, interval, d, k):
-    """Mean command over a sample while effect `kind` takes it from the one before to this one."""
+def ramp_law(kind, command, previous, start, end, d, k):
+    """Mean command over a part of a sample while effect `kind` takes it from the one before to this one."""
     return command
 
 

@@ -18,6 +18,8 @@ from flexarm_env.plant.structure import DRIVERS, HUB_TORQUE, MOTOR_TORQUE, Linea
 RESPONSE = 5
 #: Longest steps [s] over which a force that depends on the motion is fitted by one quartic; with drag, by a parabola.
 LONGEST_STEP, LONGEST_STEP_WITH_DRAG = 5e-3, 2.5e-3
+#: Parts of a sample in each of which a drive that is on its way to the next command is taken by its mean.
+RAMP_PARTS = 4
 #: Change of a force [Nm, N/m] below which the sweeps that fit it stop.
 TOLERANCE = 1e-12
 LAW_LISTS = {
@@ -92,6 +94,8 @@ def pack(
         place += math.prod(value.shape[len(arms) :])
     n[at.STRIDE] = place
     longest = LONGEST_STEP_WITH_DRAG if len(points) else LONGEST_STEP if varying else np.inf
+    if any(law.port == "ramp" for law in active):
+        longest = min(longest, interval / RAMP_PARTS)
     parts = np.zeros((*arms, 2))
     parts[..., 0], parts[..., 1] = early, interval - early
     steps = np.where(parts > 0.0, np.maximum(np.ceil(parts / longest - 1e-9), 1), 0)
