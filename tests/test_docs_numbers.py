@@ -17,7 +17,7 @@ import pytest
 from documents import PROJECT, README
 
 RESULTS = PROJECT / "results"
-HIDDEN = RESULTS / "hidden_effects" / "diagnose-5"
+HIDDEN = RESULTS / "hidden_effects" / "diagnose-6"
 
 
 def demo_table(numbers: str) -> str:
