@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import os
 import socket
 from collections import OrderedDict
@@ -64,8 +65,15 @@ def serve(arm: Arm, recordings: Sequence[Recording], columns: Path | None, port:
     app.config.quasar_config["loadingBar"] = {"skipHijack": True}  # a bar without a name: a screen reader stumbles over it
     app.add_middleware(Guard, hosts=hosts)
     app.on_startup(lambda: background_tasks.create(_announce(port)))
+    logging.getLogger("uvicorn.error").addFilter(_is_news)
     with contextlib.suppress(KeyboardInterrupt):
         ui.run(host=HOST, port=port, title="FlexArm lab", reload=False, show=show, show_welcome_message=False, language="en-US")
+
+
+def _is_news(record: logging.LogRecord) -> bool:
+    """Whether a line of the server's log is not about a visitor who left before the answer: Starlette calls that an error."""
+    error = record.exc_info[1] if record.exc_info else None
+    return not (isinstance(error, RuntimeError) and str(error) == "No response returned.")
 
 
 async def _announce(port: int) -> None:

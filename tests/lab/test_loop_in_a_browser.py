@@ -5,10 +5,14 @@ from __future__ import annotations
 import os
 import re
 import signal
+import socket
+import struct
 import subprocess
 import sys
+import time
 import tomllib
 import urllib.error
+import urllib.parse
 import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
@@ -270,6 +274,19 @@ def test_only_the_machine_s_own_names_are_answered(lab):
     for host, status in ((f"127.0.0.1:{port}", 200), (f"evil.example:{port}", 421)):
         request = urllib.request.Request(lab.url, headers={"Host": host})
         assert answered(request) == status
+
+
+def test_visitors_who_leave_at_once_leave_no_traceback(lab, folder):
+    where = urllib.parse.urlsplit(lab.url)
+    with urllib.request.urlopen(lab.url) as answer:
+        files = re.findall(r'"(/_nicegui/[^"]+\.js)"', answer.read().decode())
+    for number, path in enumerate(files * 10):
+        with socket.create_connection((where.hostname, where.port)) as visitor:
+            visitor.sendall(f"GET {path} HTTP/1.1\r\nHost: {where.netloc}\r\n\r\n".encode())
+            time.sleep(0.001 * (number % 4))
+            visitor.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))  # closed with a reset
+    assert answered(urllib.request.Request(lab.url)) == 200
+    assert "Traceback" not in (folder / "lab.log").read_text()
 
 
 def test_a_taken_port_is_one_line(lab, folder):
