@@ -7,6 +7,8 @@ through them to the free one.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,8 +26,10 @@ LEVELS = (3e-3, 3e-4, 3e-5)
 DIFFERENCE, ITERATIONS, TOLERANCE = 1e-5, 5, 1e-4
 #: Dampings that are tried in turn, over the priors' weight.
 DAMPINGS = (0.0, 1e1, 1e2, 1e3, 1e4)
-#: Error over noise above which a model lacks something, so that its nearest minimum is not the machine.
-LACKS = 1.4
+#: Error over noise above which a model lacks something, so that its nearest minimum is not the machine; below which it is there.
+LACKS, AT_NOISE = 1.4, 1.002
+#: How far to either side other minima are sought, in priors' standard deviations, and through which levels.
+ASIDE, LEVELS_ASIDE = 0.3, (3e-3, 3e-5)
 
 
 def gauss_newton(residual: Residual, x: Floats, prior: Floats) -> Floats:
@@ -57,20 +61,56 @@ def gauss_newton(residual: Residual, x: Floats, prior: Floats) -> Floats:
 def settled(problem: Problem, x: Floats) -> Floats:
     """Return x on the best common scale and as far as it goes; on that scale only, if the rest does not help or lacks something.
 
+    A replay is rough along what the data hardly show, and a fit ends in one of its hollows. Where more is left than noise, two
+    more are sought from some way to either side.
+
     Args:
         problem: in which x is judged, weighed by what the fit left, at the arm's own torque noise.
         x: where a fit ended (x,).
     """
-    arm, coordinates = problem.arm, problem.coordinates
-    powers = force_powers(arm, coordinates)
-    scale, own = torque_scale(arm, problem.data.runs), problem.torque_noise
-    x, _ = best_scale(problem, x, powers)
+    x, _ = best_scale(problem, x, force_powers(problem.arm, problem.coordinates))
     if np.sqrt(np.mean((problem.sigma / problem.data.noise) ** 2)) > LACKS:
         return x
-    other = x
-    for noise in [level * scale for level in LEVELS if level * scale > own] + [own]:
-        level = Problem(arm, problem.data, coordinates, noise, np.ones_like(problem.sigma))
-        level.weigh(place_values(arm, coordinates, other), held=False)
-        other, _ = best_scale(level, gauss_newton(level.residual, other, level.prior), powers)
-    costs = [cost_of(problem.residual(there), there, problem.prior) for there in (other, x)]
-    return other if costs[0] < costs[1] else x
+
+    def cost(there: Floats) -> float:
+        return cost_of(problem.residual(there), there, problem.prior)
+
+    best = min(x, _descended(problem, x, LEVELS), key=cost)
+    if _error(problem, best) > AT_NOISE:
+        aside = ASIDE * problem.prior * _loosest(problem, best)
+        starts = best - aside, best + aside
+        best = min(best, *(_descended(problem, start, LEVELS_ASIDE) for start in starts), key=cost)
+    return best
+
+
+def _descended(problem: Problem, x: Floats, levels: Sequence[float]) -> Floats:
+    """Return where x gets through levels of process noise, over the rms of the drive's torque, and then at the arm's own."""
+    powers = force_powers(problem.arm, problem.coordinates)
+    scale, own = torque_scale(problem.arm, problem.data.runs), problem.torque_noise
+    for noise in [level * scale for level in levels if level * scale > own] + [own]:
+        level = _at_level(problem, x, noise)
+        x, _ = best_scale(level, gauss_newton(level.residual, x, level.prior), powers)
+    return x
+
+
+def _at_level(problem: Problem, x: Floats, torque_noise: float) -> Problem:
+    level = Problem(problem.arm, problem.data, problem.coordinates, torque_noise, np.ones_like(problem.sigma))
+    level.weigh(place_values(problem.arm, problem.coordinates, x), held=False)
+    return level
+
+
+def _error(problem: Problem, x: Floats) -> float:
+    """Return the rms error of a whole replay over the noise."""
+    errors = problem.errors_of(place_values(problem.arm, problem.coordinates, x))
+    return float(np.sqrt(np.mean((np.concatenate(errors) / problem.data.noise) ** 2)))
+
+
+def _loosest(problem: Problem, x: Floats) -> Floats:
+    """Return the direction of unit length, in priors' standard deviations, that the data hold least but for the common scale."""
+    level = _at_level(problem, x, max(LEVELS[0] * torque_scale(problem.arm, problem.data.runs), problem.torque_noise))
+    j = jacobian(level.residual, x, np.full(len(x), DIFFERENCE)) * level.prior
+    onto_scale = force_powers(problem.arm, problem.coordinates) / level.prior
+    length = np.linalg.norm(onto_scale)
+    j -= np.outer(j @ onto_scale, onto_scale) / max(length**2, 1e-300)
+    _, axes = np.linalg.eigh(j.T @ j)
+    return axes[:, 1 if length else 0]

@@ -113,3 +113,19 @@ def test_a_fit_settles_where_inertia_was_shared_wrongly_between_motor_and_hub():
     before, after, true = (cost_of(problem.residual(at), at, problem.prior) for at in (there, found, x))
     assert before > true + 100.0
     assert after <= true  # noise has its own idea of the truth
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [3, 8])  # from where one way down ends at twice the cost
+def test_a_fit_that_ends_in_a_hollow_finds_the_next(seed):
+    arm = Arm.load("thesis-fem")
+    nominal, data = prepare(arm, [simulate(arm, "square", duration=4.0, rate=200.0, seed=seed)])
+    coordinates = free_coordinates(nominal, nominal, data)
+    problem = Problem(nominal, data, coordinates, 0.0, np.ones((1, 4)))
+    problem.weigh(nominal, held=False)
+    rough = ("drive.gear_stiffness", "drive.motor_", "hub.inertia", "effects.")
+    widths = [(0.6 if c.path.startswith(rough) else 0.1) * c.prior for c in coordinates]
+    x = position(nominal, coordinates)
+    found = settled(problem, x + widths * np.random.default_rng(seed).standard_normal(len(x)))
+    after, true = (cost_of(problem.residual(at), at, problem.prior) for at in (found, x))
+    assert after <= true
