@@ -15,7 +15,7 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 
 from benchmarks.hidden_effects import baselines, sindy, table  # noqa: E402
 from benchmarks.hidden_effects.calibrate import calibrate  # noqa: E402
-from benchmarks.hidden_effects.cases import cases  # noqa: E402
+from benchmarks.hidden_effects.cases import cases, sample  # noqa: E402
 from benchmarks.hidden_effects.run import by_diagnosis, run  # noqa: E402
 
 METHODS = {
@@ -36,10 +36,14 @@ def _options() -> argparse.Namespace:
         metavar="PATTERN",
         help="names of cases, as 'backlash-*', or of effects to calibrate; no table is written",
     )
+    parser.add_argument("--sample", type=int, metavar="COUNT", help="answer so many cases, drawn at random, and not all")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--output", type=Path, default=RESULTS, help="folder of answers and tables")
     parser.add_argument("--calibrate", action="store_true", help="find the sizes of the effects again instead")
-    return parser.parse_args()
+    asked = parser.parse_args()
+    if asked.sample is not None and asked.sample < 1:
+        parser.error(f"--sample {asked.sample}: at least 1 case is needed")
+    return asked
 
 
 def main() -> None:
@@ -53,7 +57,8 @@ def main() -> None:
     if asked.calibrate:
         calibrate(asked.only, asked.jobs, say)
         return
-    chosen = [case for case in cases(asked.seed) if fnmatch.fnmatchcase(case.name, asked.only)]
+    listed = cases(asked.seed) if asked.sample is None else sample(asked.seed, asked.sample)
+    chosen = [case for case in listed if fnmatch.fnmatchcase(case.name, asked.only)]
 
     def answered(count: int, answer: dict[str, Any]) -> None:
         found, case = answer["found"], answer["case"]
@@ -75,6 +80,7 @@ def _folder(asked: argparse.Namespace, method: str) -> Path:
 def _write(asked: argparse.Namespace, method: str, answers: list[dict[str, Any]]) -> None:
     """Write a method's table, and print it."""
     command = f"python -m benchmarks.hidden_effects --method {asked.method} --seed {asked.seed}"
+    command += f" --sample {asked.sample}" if asked.sample else ""
     print(method)
     for figure in table.write(_folder(asked, method), answers, method, asked.seed, command):
         print(f"{figure.what:50} {figure.goal:>12}  {figure.text:>16}  {'met' if figure.met else 'missed'}")

@@ -117,3 +117,9 @@ def cases(seed: int) -> list[Case]:
         out.append(_case(seed, "-".join(pairs[i]), "two", pairs[i], 3.0))
     out += [_case(seed, f"null-{i}", "null", (), 0.0) for i in range(NULLS)]
     return out
+
+
+def sample(seed: int, count: int) -> list[Case]:
+    """Return some cases of a seed, drawn at random: a smaller sample is part of every larger one."""
+    every = cases(seed)
+    return [every[i] for i in stream(seed, "sample").permutation(len(every))[:count]]

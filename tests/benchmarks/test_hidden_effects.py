@@ -10,7 +10,7 @@ import pytest
 import flexarm_env
 from benchmarks.hidden_effects import table, truth
 from benchmarks.hidden_effects.baselines import best_fit_wins, stepwise
-from benchmarks.hidden_effects.cases import CATALOGUE, cases
+from benchmarks.hidden_effects.cases import CATALOGUE, cases, sample
 from benchmarks.hidden_effects.machine import record
 from benchmarks.hidden_effects.run import run
 from benchmarks.hidden_effects.score import figures, wrong
@@ -52,6 +52,14 @@ def test_cases_are_as_many_and_as_mixed_as_they_say():
 def test_a_seed_gives_the_same_cases_and_another_others():
     assert cases(1) == cases(1)
     assert all(a.settings != b.settings for a, b in zip(cases(1), cases(2), strict=True) if a.kind in ("one", "outside"))
+
+
+def test_a_sample_is_of_all_kinds_and_part_of_a_larger_one():
+    small, large = sample(1, 60), sample(1, 120)
+    assert large[:60] == small
+    assert len({c.name for c in large}) == 120
+    assert {c.kind for c in small} == {"one", "two", "outside", "null"}
+    assert {c.name for c in sample(1, len(cases(1)))} == {c.name for c in cases(1)}
 
 
 def test_a_saturation_is_below_the_largest_command():
