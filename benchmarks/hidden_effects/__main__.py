@@ -83,7 +83,7 @@ def _write(asked: argparse.Namespace, method: str, answers: list[dict[str, Any]]
     command += f" --sample {asked.sample}" if asked.sample else ""
     print(method)
     for figure in table.write(_folder(asked, method), answers, method, asked.seed, command):
-        print(f"{figure.what:50} {figure.goal:>12}  {figure.text:>16}  {'met' if figure.met else 'missed'}")
+        print(f"{figure.what:50} {figure.goal:>12}  {figure.text:>16}  {figure.judged}")
 
 
 if __name__ == "__main__":
