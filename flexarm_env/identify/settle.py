@@ -113,4 +113,4 @@ def _loosest(problem: Problem, x: Floats) -> Floats:
     length = np.linalg.norm(onto_scale)
     j -= np.outer(j @ onto_scale, onto_scale) / max(length**2, 1e-300)
     _, axes = np.linalg.eigh(j.T @ j)
-    return axes[:, 1 if length else 0]
+    return axes[:, 1 if length and len(x) > 1 else 0]  # the scale itself comes first

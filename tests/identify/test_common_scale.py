@@ -115,6 +115,13 @@ def test_a_fit_settles_where_inertia_was_shared_wrongly_between_motor_and_hub():
     assert after <= true  # noise has its own idea of the truth
 
 
+def test_a_fit_of_the_torque_constant_alone_settles():
+    problem, x, _ = problem_of()
+    place = [c.path for c in problem.coordinates].index("drive.torque_constant")
+    alone = replace(problem, coordinates=[problem.coordinates[place]])
+    np.testing.assert_allclose(settled(alone, np.array([0.02])), x[place], atol=1e-3)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [3, 8])  # from where one way down ends at twice the cost
 def test_a_fit_that_ends_in_a_hollow_finds_the_next(seed):
