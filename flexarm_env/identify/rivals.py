@@ -12,7 +12,7 @@ from flexarm_env.identify.fits import Fits
 from flexarm_env.identify.hypothesis import Hypothesis, at_bound, criterion, judged
 from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.problem import Score
-from flexarm_env.identify.refit import NEAR, polish
+from flexarm_env.identify.refit import FAR_OFF, NEAR, polish
 from flexarm_env.identify.screen import candidates
 
 #: Two effects are equivalent if the excess error that they leave differs by less than the first share of what they remove, and
@@ -75,9 +75,10 @@ def in_place_of(effect: str, now: Hypothesis, fits: Fits, rules: Acceptance, don
     measure = rules.measure_of([now.score, *(h.score for h in found)])
     order = order_of(now.score, fits.data, measure)
     found.sort(key=order)
-    with in_threads(fits.jobs):
-        polished = judged(found[0].effects, polish(found[0].refit, fits.nominal, fits.data), fits.data)
-    found[0] = found[0] if at_bound(polished) else polished
+    if now.score.windows > NEAR[1] or found[0].score.windows < FAR_OFF:  # what is far off comes nowhere near what is near
+        with in_threads(fits.jobs):
+            polished = judged(found[0].effects, polish(found[0].refit, fits.nominal, fits.data), fits.data)
+        found[0] = found[0] if at_bound(polished) else polished
     least = LEAST_GAIN if now.score.windows >= NEAR[1] else 0.0
     better = order(found[0]) < (1.0 - least) * order(now)
     if at_bound(replace(now, effects=(effect,))):  # no size of it explains the data
