@@ -16,6 +16,8 @@ from pathlib import Path
 import pytest
 from documents import PROJECT, README
 
+from benchmarks.hidden_effects.score import Figure
+
 RESULTS = PROJECT / "results"
 HIDDEN = RESULTS / "hidden_effects" / "diagnose-6"
 
@@ -86,6 +88,20 @@ def hidden_effects_table(written: str) -> str:
     return written.split("\n", 2)[2]
 
 
+def methods_table(numbers: str) -> str:
+    """What the methods make of the benchmark, side by side; of the first, the numbers are given."""
+    results = [json.loads(numbers)]
+    results += [json.loads((HIDDEN.parent / f"{name}-6" / "table.json").read_text()) for name in ("best-fit", "bic", "sindy")]
+    lines = [
+        "| | goal | " + " | ".join(f"`{r['method']}`, {r['cases']} cases" for r in results) + " |",
+        "|---|---|" + "---:|" * len(results),
+    ]
+    for figures in zip(*(r["figures"] for r in results), strict=True):
+        texts = [Figure(**figure).text for figure in figures]
+        lines.append(f"| {figures[0]['what']} | {figures[0]['goal']} | {' | '.join(texts)} |")
+    return "\n".join(lines) + "\n"
+
+
 @dataclass(frozen=True)
 class Table:
     """A table of a document: its name in the comments, the numbers it is made of, and how."""
@@ -109,6 +125,7 @@ TABLES = (
     Table("baselines", README, RESULTS / "baselines" / "baselines.json", baselines_table),
     Table("hidden-effects", README, HIDDEN / "table.json", hidden_effects_words),
     Table("hidden-effects", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.md", hidden_effects_table),
+    Table("methods", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.json", methods_table),
 )
 
 

@@ -113,10 +113,11 @@ def test_an_exact_twin_is_as_good_in_its_own_line_only():
 
 def test_of_what_no_case_says_there_is_none(tmp_path):
     null = next(c for c in cases(1) if c.kind == "null")
-    found = table.write(tmp_path, [answer(null, [], "nothing_missing")], "mine", 1, "command")
+    folder = tmp_path / "mine-1"
+    found = table.write(folder, [answer(null, [], "nothing_missing")], "mine", 1, "command")
     assert {f.what for f in found if f.met} == {"false alarm on nulls", "time of one core for three recordings, median"}
-    assert "| two effects, both right, strength 3 | ≥ 80 % | none |  |" in (tmp_path / "table.md").read_text()
-    assert "NaN" not in (tmp_path / "table.json").read_text()
+    assert "| two effects, both right, strength 3 | ≥ 80 % | none |  |" in (folder / "table.md").read_text()
+    assert "NaN" not in (folder / "table.json").read_text()
 
 
 def test_a_stopped_run_goes_on(tmp_path):
