@@ -102,4 +102,11 @@ def load_effect(spec: str) -> type[Effect]:
     found = {effect.__name__: effect for effect in _effects_in(module)}
     if name not in found:
         raise InputError(f"{path} has no effect '{name}'{did_you_mean(name, found)}")
-    return checked(found[name])
+    return _with_sources(checked(found[name]))
+
+
+def _with_sources(effect: type[Effect]) -> type[Effect]:
+    """Return an effect whose laws carry the text that the kernel is made of: where they are unpickled no file is known."""
+    for function in filter(None, map(effect.port, LAW_PORTS)):
+        vars(function)["source"] = inspect.getsource(function)
+    return effect

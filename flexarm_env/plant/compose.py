@@ -96,7 +96,7 @@ def cache_folder() -> Path:
 
 
 def _law_source(name: str, function: Callable[..., float]) -> str:
-    source = textwrap.dedent(inspect.getsource(function))
+    source = textwrap.dedent(vars(function).get("source") or inspect.getsource(function))
     body = source[source.index("def ") :]
     options = ", ".join(f"{name}={value!r}" for name, value in (OPTIONS | NO_WRAPPERS).items())
     return f"@njit({options})\n" + body.replace(f"def {function.__name__}(", f"def {name}(", 1)

@@ -8,9 +8,12 @@ import inspect
 import itertools
 import math
 import re
+import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 
+import cloudpickle
 import numba
 import numpy as np
 import pytest
@@ -241,3 +244,16 @@ def test_an_effect_of_one_s_own_joins_the_catalogue(arm, tmp_path):
     assert ends[1] < ends[0] - 0.1
     # Its module is the file: the catalogue's own files are named as their effects are.
     assert importlib.import_module("flexarm_env.effects.coulomb").Coulomb is catalogue()["coulomb"]
+
+
+def test_an_effect_of_one_s_own_is_composed_where_it_is_unpickled(tmp_path):
+    file = tmp_path / "mine.py"
+    file.write_text(OWN)
+    pickled = tmp_path / "laws"
+    pickled.write_bytes(cloudpickle.dumps(catalogue().extended(load_effect(f"{file}:Spring")).laws))
+    program = (
+        "import pickle, sys; from pathlib import Path; from flexarm_env.plant.compose import source_of;"
+        "print(source_of(pickle.loads(Path(sys.argv[1]).read_bytes())))"
+    )
+    made = subprocess.run([sys.executable, "-c", program, str(pickled)], capture_output=True, text=True, check=True)
+    assert "return -stiffness * angle**3" in made.stdout
