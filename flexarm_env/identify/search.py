@@ -12,6 +12,7 @@ from flexarm_env.identify.data import Data
 from flexarm_env.identify.fits import Fits
 from flexarm_env.identify.hypothesis import OFFSET, Hypothesis, at_bound, excess, in_windows, judged
 from flexarm_env.identify.least_squares import in_threads
+from flexarm_env.identify.one_by_one import one_by_one
 from flexarm_env.identify.problem import Score, score
 from flexarm_env.identify.proposals import Proposals
 from flexarm_env.identify.refit import FAR_OFF, Progress, Refit, polish, refit, with_effects_of
@@ -48,6 +49,24 @@ class Search:
                 self._swap(done)
         if len(self.accepted) == 1:
             self._swap(done)
+        self._drop_useless()
+        if not self.rules.explains(self.best):
+            self._add_one_by_one(0.8)
+
+    def _add_one_by_one(self, done: float) -> None:
+        """Put effects that explain the data only together in the place of what was found, which does not."""
+        steps = one_by_one(self.base, self.fits, self.rules, MOST_EFFECTS, done)
+        if not steps:
+            return
+        last = steps[-1]
+        self.accepted = list(last.effects)
+        self.equivalent = [[effect] for effect in last.effects]
+        self.steps = {h.effects[-1]: h.score for h in steps}
+        for without, step in zip([self.first, *(h.score for h in steps)], steps, strict=False):
+            gain = 1.0 - in_windows(step.score) / in_windows(without)
+            self.ranking[step.effects[-1]] = (float(np.clip(gain, 0.0, 1.0)), last.refit)
+        self.found, self.best = last.refit, last.score
+        self._swap(done)
         self._drop_useless()
 
     def open_hypotheses(self) -> dict[str, Arm]:

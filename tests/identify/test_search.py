@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from flexarm_env import Arm
@@ -12,6 +14,7 @@ from flexarm_env.identify.acceptance import Acceptance
 from flexarm_env.identify.data import Data, prepare
 from flexarm_env.identify.hypothesis import Hypothesis
 from flexarm_env.identify.problem import Score, score
+from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.refit import best_refit, refit
 from flexarm_env.identify.rivals import Place, rivals_of
 from flexarm_env.identify.search import Search
@@ -115,3 +118,37 @@ def test_what_another_effect_changes_has_no_rivals():
     assert "dead_zone" in rivals_of("brush_drop", arm)
     assert "stiction" in arm.effects
     assert rivals_of("coulomb", arm.without_effect("coulomb")) == []
+
+
+def fruitless(nominal: Arm, recordings: list[Recording]) -> Search:
+    """A search that has found nothing."""
+    arm, data = prepare(nominal, recordings)
+    search = Search(arm, data, 1, lambda done, text: None)
+    search.base = search.found = best_refit(arm, data)
+    search.first = search.best = score(search.base.arm, data)
+    search.rules = Acceptance(search.first, search.noisy)
+    return search
+
+
+@pytest.mark.slow
+def test_effects_that_explain_only_together_are_added_one_by_one():
+    nominal = Arm.load("thesis")
+    made = nominal.with_effect("cable_stiffness", stiffness=0.2, rest_angle=0.0).with_effect("tach_filter", time=0.02)
+    search = fruitless(nominal, [simulate(made, experiment, seed=3, duration=6.0) for experiment in ("square", "sweep")])
+    search._add_one_by_one(0.8)
+    assert sorted(search.accepted) == ["cable_stiffness", "tach_filter"]
+    assert [names[0] for names in search.equivalent] == search.accepted == list(search.steps)
+    assert search.best.windows < 1.05 < search.steps[search.accepted[0]].windows < search.first.windows
+    assert all(0.0 < search.ranking[name][0] <= 1.0 for name in search.accepted)
+
+
+@pytest.mark.slow
+def test_what_no_catalogue_holds_is_not_explained_one_by_one():
+    nominal = Arm.load("thesis")
+    run = simulate(nominal, "square", seed=3, duration=6.0)
+    buzz = run.signals["strain_base"] + 0.1 * np.sign(np.sin(2.0 * np.pi * 7.3 * run.time))
+    search = fruitless(nominal, [replace(run, signals={**run.signals, "strain_base": buzz})])
+    assert search.first.windows > 3.0
+    search._add_one_by_one(0.8)
+    assert search.accepted == []
+    assert search.found is search.base
