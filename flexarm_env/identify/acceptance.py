@@ -56,6 +56,11 @@ class Acceptance:
             errors.append((self.first.free_run, found.free_run, WHOLE_FREE_RUN, LEAST_TOTAL_GAIN))
         return all(new <= whole or excess(new) <= (1.0 - least) * excess(old) for old, new, whole, least in errors)
 
+    def is_whole(self, found: Score) -> bool:
+        """Whether what was found explains the data and leaves hardly more than noise: what is imitated is not."""
+        near = found.windows < WHOLE and excess(found.windows) < (1.0 - LEAST_TOTAL_GAIN_NEAR) * excess(self.first.windows)
+        return (near or found.windows < PERFECT) and self.explains(found)
+
 
 def is_lost(best: float, without: Score) -> bool:
     """Whether the best error in windows that was found is far off, or leaves most of what there was without."""

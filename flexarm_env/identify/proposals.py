@@ -34,12 +34,33 @@ class Proposals:
         """Return every effect tried beside what was found."""
         return self.fits.screen(self._starts(found, is_first), done, share)
 
-    def refit(
-        self, trials: list[Trial], found: Refit, best: Score, is_first: bool, done: float, share: float
+    def nearest(self, trials: list[Trial], done: float, share: float) -> list[Hypothesis]:
+        """Refit with the candidates that lower the cost most."""
+        control = next(t for t in trials if not t.effect)
+        lowest = min(t.cost for t in trials)
+        level = min(LEAST_CHANGE * control.cost, control.cost - LEAST_OF_BEST * (control.cost - lowest))
+        near = control.cost - NEAR_BEST * (control.cost - lowest)
+        better = [t for t in trials if t.effect and t.cost < level][:FINALISTS]
+        found: list[Hypothesis] = []
+        for part in ([t for t in better if t.cost <= near], [t for t in better if t.cost > near]):
+            if not any(self.rules.is_enough(h.score) for h in found):
+                found += self.fits.refit_all([(t.effect,) for t in part], [t.arm for t in part], done, share)
+        return found
+
+    def others(
+        self,
+        hypotheses: list[Hypothesis],
+        trials: list[Trial],
+        found: Refit,
+        best: Score,
+        is_first: bool,
+        done: float,
+        share: float,
     ) -> list[Hypothesis]:
-        """Refit with the candidates that promise most; where none comes near, with others from constants that are not bent.
+        """Return hypotheses and, where none of them comes near, others from constants that are not bent.
 
         Args:
+            hypotheses: refitted with the candidates that promise most.
             trials: of every effect.
             found: the arm that the effect is sought for.
             best: its errors.
@@ -47,12 +68,11 @@ class Proposals:
             done: share of the search.
             share: of the search that this takes.
         """
-        hypotheses = self._refit_best(trials, done, 0.25 * share)
-        if _are_lost(hypotheses, best) and not (is_first and self._refit_did_little()):
+        if are_lost(hypotheses, best) and not (is_first and self._refit_did_little()):
             unmoved = as_it_is(with_effects_of(found.arm, self.fits.nominal), self.fits.data)
             others = self.fits.screen([unmoved], done, 0.25 * share)
-            hypotheses = self._best_of_each(hypotheses + self._refit_best(others, done + 0.25 * share, 0.25 * share))
-        if _are_lost(hypotheses, best) and is_first:  # a second effect's fits take minutes, with the first in the arm
+            hypotheses = self._best_of_each(hypotheses + self.nearest(others, done + 0.25 * share, 0.25 * share))
+        if are_lost(hypotheses, best) and is_first:  # a second effect's fits take minutes, with the first in the arm
             tried = [h.effects[0] for h in hypotheses]
             hypotheses += self.fits.with_all_constants(found, trials, tried, done + 0.25 * share, 0.25 * share)
         offset = OFFSET not in found.arm.effects
@@ -74,19 +94,6 @@ class Proposals:
         """Whether the refit of the constants did so little that effects are tried from the nominal ones at once."""
         return self.left >= REFIT_HELPS
 
-    def _refit_best(self, trials: list[Trial], done: float, share: float) -> list[Hypothesis]:
-        """Refit with the candidates that lower the cost most."""
-        control = next(t for t in trials if not t.effect)
-        lowest = min(t.cost for t in trials)
-        level = min(LEAST_CHANGE * control.cost, control.cost - LEAST_OF_BEST * (control.cost - lowest))
-        near = control.cost - NEAR_BEST * (control.cost - lowest)
-        better = [t for t in trials if t.effect and t.cost < level][:FINALISTS]
-        found: list[Hypothesis] = []
-        for part in ([t for t in better if t.cost <= near], [t for t in better if t.cost > near]):
-            if not any(self.rules.is_enough(h.score) for h in found):
-                found += self.fits.refit_all([(t.effect,) for t in part], [t.arm for t in part], done, share)
-        return found
-
     def _best_of_each(self, found: list[Hypothesis]) -> list[Hypothesis]:
         """Return the better of those that say the same."""
         if not found:
@@ -96,6 +103,6 @@ class Proposals:
         return list(best.values())
 
 
-def _are_lost(found: Sequence[Hypothesis], without: Score) -> bool:
+def are_lost(found: Sequence[Hypothesis], without: Score) -> bool:
     """Whether none of the hypotheses comes near."""
     return is_lost(min((h.score.windows for h in found), default=np.inf), without)

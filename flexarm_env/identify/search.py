@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 import numpy as np
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.acceptance import Acceptance, stays_lost
+from flexarm_env.identify.acceptance import WHOLE, Acceptance, stays_lost
 from flexarm_env.identify.data import Data
 from flexarm_env.identify.fits import Fits
 from flexarm_env.identify.hypothesis import OFFSET, Hypothesis, at_bound, excess, in_windows, judged
 from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.one_by_one import one_by_one
 from flexarm_env.identify.problem import Score, score
-from flexarm_env.identify.proposals import Proposals
+from flexarm_env.identify.proposals import Proposals, are_lost
 from flexarm_env.identify.refit import FAR_OFF, Progress, Refit, polish, refit, with_effects_of
 from flexarm_env.identify.rivals import SAME_GAIN, Place, in_place_of, order_of, same
 from flexarm_env.identify.screen import Trial
@@ -42,6 +43,7 @@ class Search:
         self.rules = Acceptance(first, self.noisy)
         self.proposals = Proposals(self.fits, self.rules, excess(first.windows) / excess(before.windows))
         self.found, self.best = base, first
+        self.chain = [judged((), base, self.data)]
         done = 0.1
         while len(self.accepted) < MOST_EFFECTS and self._add_one(done, 0.3):
             done = min(done + 0.3, 0.7)
@@ -50,24 +52,29 @@ class Search:
         if len(self.accepted) == 1:
             self._swap(done)
         self._drop_useless()
-        if not self.rules.explains(self.best):
-            self._add_one_by_one(0.8)
+        if self.first.windows > WHOLE and not self.rules.explains(self.best) and self._add_one_by_one(done, bent=True):
+            self._swap(done)
+            self._drop_useless()
 
-    def _add_one_by_one(self, done: float) -> None:
-        """Put effects that explain the data only together in the place of what was found, which does not."""
-        steps = one_by_one(self.base, self.fits, self.rules, MOST_EFFECTS, done)
-        if not steps:
-            return
-        last = steps[-1]
+    def _add_one_by_one(self, done: float, bent: bool) -> bool:
+        """Take effects that explain the data only together, if there are some.
+
+        Args:
+            done: share of the search.
+            bent: whether the constants may have made up for what is missing.
+        """
+        self.chain = one_by_one(self.chain, self.fits, self.rules, MOST_EFFECTS, done, bent) if self.chain else []
+        if not self.chain or not self.rules.is_whole(self.chain[-1].score):
+            return False
+        last = self.chain[-1]
         self.accepted = list(last.effects)
         self.equivalent = [[effect] for effect in last.effects]
-        self.steps = {h.effects[-1]: h.score for h in steps}
-        for without, step in zip([self.first, *(h.score for h in steps)], steps, strict=False):
-            gain = 1.0 - in_windows(step.score) / in_windows(without)
+        self.steps = {h.effects[-1]: h.score for h in self.chain[1:]}
+        for without, step in pairwise(self.chain):
+            gain = 1.0 - in_windows(step.score) / in_windows(without.score)
             self.ranking[step.effects[-1]] = (float(np.clip(gain, 0.0, 1.0)), last.refit)
         self.found, self.best = last.refit, last.score
-        self._swap(done)
-        self._drop_useless()
+        return True
 
     def open_hypotheses(self) -> dict[str, Arm]:
         """Return the arms between which the recordings do not decide, by effect; the arm that is left, where they do."""
@@ -89,7 +96,10 @@ class Search:
             self._rank_screened(trials)
         if enough:
             return False
-        found = self.proposals.refit(trials, self.found, self.best, is_first, done + 0.6 * share, 0.4 * share)
+        found = self.proposals.nearest(trials, done + 0.6 * share, 0.1 * share)
+        if is_first and self._come_together(found, done + 0.7 * share):
+            return True
+        found = self.proposals.others(found, trials, self.found, self.best, is_first, done + 0.7 * share, 0.3 * share)
         if self.accepted:
             self._go_on()
         if not found:
@@ -102,6 +112,15 @@ class Search:
                 self._remember(hypothesis.effects[0], gain, hypothesis.refit)
         possible = [h for h in found if not at_bound(h)]
         return bool(possible) and self._accept(possible)
+
+    def _come_together(self, found: list[Hypothesis], done: float) -> bool:
+        """Take the first effect and more beside it where none comes near alone, but some explain the data together."""
+        possible = [h for h in found if not at_bound(h)]
+        if not possible:
+            return False
+        measure = self.rules.measure_of([h.score for h in possible])
+        self.chain.append(min(possible, key=lambda h: measure(h.score)))
+        return are_lost(found, self.best) and self._add_one_by_one(done, bent=False)
 
     def _accept(self, found: list[Hypothesis]) -> bool:
         """Take the best hypothesis if it removes enough; the simplest of those that remove nearly as much."""
