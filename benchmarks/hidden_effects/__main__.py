@@ -28,7 +28,7 @@ RESULTS = Path(__file__).resolve().parents[2] / "results" / "hidden_effects"
 
 def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.hidden_effects", description=__doc__)
-    parser.add_argument("--seed", type=int, default=1, help="of the cases; 1 to 7 have been looked at")
+    parser.add_argument("--seed", type=int, default=1, help="of the cases; 1 to 8 have been looked at")
     parser.add_argument("--method", choices=METHODS, default="diagnose", help="that answers them")
     parser.add_argument(
         "--only",
