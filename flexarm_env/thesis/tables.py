@@ -10,13 +10,15 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.recording import Recording
 from flexarm_env.thesis import arms
 from flexarm_env.thesis.appendix import back_emf
-from flexarm_env.thesis.constants import EXPERIMENT_2, EXPERIMENT_3, RESISTANCE
+from flexarm_env.thesis.constants import EXPERIMENT_2, EXPERIMENT_3, RESISTANCE, TABLE
 from flexarm_env.thesis.runs import Floats
 
 #: How exactly each table shows the motor's speed [rad/s]: scatter of E over kφ; 1 mA over b; slopes to four digits.
 EMF_SCATTER, POWER_SCATTER, RUN_DOWN_SCATTER = 0.04, 0.5, 0.3
 #: For how long each steady state is held [s], so that the last one has died away by the first of its readings.
-EMF_HOLD, POWER_HOLD, READINGS = 2.0, 48.0, 8
+EMF_HOLD, POWER_HOLD, READINGS = 2.0, 4.8, 8
+#: Motor inertia of experiment 2 [kg m²]: steady states do not show it, and come sooner with a tenth of the motor's.
+POWER_INERTIA = 0.1 * TABLE["J_m"]
 #: How long the printed initial slope of a run-down is followed, and how long the motor is seen at rest afterwards [s].
 TANGENT, AT_REST = 0.05, 0.1
 
@@ -33,7 +35,7 @@ def experiment_1() -> tuple[Arm, list[Recording]]:
 def experiment_2() -> tuple[Arm, list[Recording]]:
     """Return the model kφ I = b ω + T_f, and experiment 2 as a staircase of currents."""
     stairs = _staircase("experiment 2", "current", EXPERIMENT_2[:, 1] / 1000.0, EXPERIMENT_2[:, 5], POWER_HOLD)
-    return _showing(arms.motor_alone(), POWER_SCATTER, "motor_inertia", "torque_constant"), [stairs]
+    return _showing(arms.motor_alone(POWER_INERTIA), POWER_SCATTER, "motor_inertia", "torque_constant"), [stairs]
 
 
 def experiment_3() -> tuple[Arm, list[Recording]]:
