@@ -20,7 +20,6 @@ from benchmarks.hidden_effects.score import Figure
 
 RESULTS = PROJECT / "results"
 HIDDEN = RESULTS / "hidden_effects" / "diagnose-8"
-COMPARED = HIDDEN.with_name("diagnose-6")
 
 
 def demo_table(numbers: str) -> str:
@@ -92,7 +91,7 @@ def hidden_effects_table(written: str) -> str:
 def methods_table(numbers: str) -> str:
     """What the methods make of the benchmark, side by side; of the first, the numbers are given."""
     results = [json.loads(numbers)]
-    results += [json.loads((COMPARED.with_name(f"{name}-6") / "table.json").read_text()) for name in ("best-fit", "bic", "sindy")]
+    results += [json.loads((HIDDEN.with_name(f"{name}-8") / "table.json").read_text()) for name in ("best-fit", "bic", "sindy")]
     lines = [
         "| | goal | " + " | ".join(f"`{r['method']}`, {r['cases']} cases" for r in results) + " |",
         "|---|---|" + "---:|" * len(results),
@@ -126,7 +125,7 @@ TABLES = (
     Table("baselines", README, RESULTS / "baselines" / "baselines.json", baselines_table),
     Table("hidden-effects", README, HIDDEN / "table.json", hidden_effects_words),
     Table("hidden-effects", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.md", hidden_effects_table),
-    Table("methods", PROJECT / "docs" / "hidden-effects.md", COMPARED / "table.json", methods_table),
+    Table("methods", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.json", methods_table),
 )
 
 
