@@ -10,13 +10,13 @@ import re
 import sys
 import textwrap
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import pytest
 from documents import PROJECT, README
 
-from benchmarks.hidden_effects.score import Figure
+from benchmarks.hidden_effects.score import Figure, figures
 
 RESULTS = PROJECT / "results"
 HIDDEN = RESULTS / "hidden_effects" / "diagnose-8"
@@ -89,16 +89,18 @@ def hidden_effects_table(written: str) -> str:
 
 
 def methods_table(numbers: str) -> str:
-    """What the methods make of the benchmark, side by side; of the first, the numbers are given."""
-    results = [json.loads(numbers)]
+    """What the methods make of the benchmark, side by side: the first, whose numbers are given, on BIC's sample as well."""
+    sampled = [(HIDDEN / "answers" / answer.name).read_text() for answer in HIDDEN.with_name("bic-8").glob("answers/*.json")]
+    same = figures([json.loads(answer) for answer in sampled])
+    results = [json.loads(numbers), {"method": "diagnose", "cases": f"the {len(sampled)}", "figures": [asdict(f) for f in same]}]
     results += [json.loads((HIDDEN.with_name(f"{name}-8") / "table.json").read_text()) for name in ("best-fit", "bic", "sindy")]
     lines = [
         "| | goal | " + " | ".join(f"`{r['method']}`, {r['cases']} cases" for r in results) + " |",
         "|---|---|" + "---:|" * len(results),
     ]
-    for figures in zip(*(r["figures"] for r in results), strict=True):
-        texts = [Figure(**figure).text for figure in figures]
-        lines.append(f"| {figures[0]['what']} | {figures[0]['goal']} | {' | '.join(texts)} |")
+    for row in zip(*(r["figures"] for r in results), strict=True):
+        texts = [Figure(**figure).text for figure in row]
+        lines.append(f"| {row[0]['what']} | {row[0]['goal']} | {' | '.join(texts)} |")
     return "\n".join(lines) + "\n"
 
 
