@@ -1,4 +1,4 @@
-"""What all tests share: the measured recordings, the hypothesis profile, and slow tests last."""
+"""What all tests share: the measured recordings, the hypothesis profile, and slow tests last, of which the longest first."""
 
 from __future__ import annotations
 
@@ -16,7 +16,12 @@ settings.load_profile("flexarm")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    items.sort(key=lambda item: item.get_closest_marker("slow") is not None)
+    items.sort(key=_order)
+
+
+def _order(item: pytest.Item) -> tuple[bool, float]:
+    slow = item.get_closest_marker("slow")
+    return slow is not None, -slow.kwargs.get("minutes", 0.0) if slow else 0.0
 
 
 @pytest.fixture(scope="session")

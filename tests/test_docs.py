@@ -151,7 +151,7 @@ def test_commands_and_snippets_run(document, place):
             run_block(document, block, place)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(minutes=3)
 @pytest.mark.parametrize("document", [d for d in DOCUMENTS if has_slow(d)], ids=name_of)
 def test_slow_commands_and_snippets_run(document, place):
     prepare(document, place)

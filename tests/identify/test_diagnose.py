@@ -79,7 +79,7 @@ def test_a_still_arm_is_insufficient():
     assert "nothing moves" in found.notes[0]
 
 
-@pytest.mark.slow
+@pytest.mark.slow(minutes=2)
 @pytest.mark.parametrize("case", ["p01", "p03", "p04", "p05", "p06", "p07", "p08"])
 def test_practice(measurements, case):
     recordings, truth = practice(measurements, case)
@@ -112,7 +112,7 @@ def test_effects_that_differ_only_at_rest_are_told_apart(setting, effect):
     assert "constant_torque" in found.equivalent[0]
 
 
-@pytest.mark.slow
+@pytest.mark.slow(minutes=4)
 @pytest.mark.parametrize("case", ["position_friction-3", "sensor_offset-3"])
 def test_constants_that_made_up_for_an_effect_do_not_hide_it(case):
     """Cases of the benchmark in which the refit bends the constants most: what is tried from there fails."""
@@ -153,7 +153,7 @@ def test_emps(measurements):
     assert relative_error(measurements / "emps" / "DATA_EMPS_PULSES.mat", ours) <= 5.37
 
 
-@pytest.mark.slow
+@pytest.mark.slow(minutes=4)
 @pytest.mark.parametrize(
     ("name", "fitted", "untouched", "least"),
     [

@@ -246,7 +246,7 @@ def test_axe_finds_no_serious_fault(lab, folder, viewport):
 
 
 @needs_chromium
-@pytest.mark.slow
+@pytest.mark.slow(minutes=3)
 def test_the_demo_s_hidden_effect_is_found(lab):
     with opened() as (page, errors):
         page.set_default_timeout(4 * PATIENCE)
