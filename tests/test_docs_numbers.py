@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import re
+import statistics
 import sys
 import textwrap
 from collections.abc import Callable
@@ -104,6 +105,20 @@ def methods_table(numbers: str) -> str:
     return "\n".join(lines) + "\n"
 
 
+def times_words(numbers: str) -> str:
+    """How long a core takes for a case of the benchmark, from its answers, beside the table whose numbers are given."""
+    answers = [json.loads(answer.read_text()) for answer in (HIDDEN / "answers").glob("*.json")]
+    assert len(answers) == json.loads(numbers)["cases"]
+    none, one, two = (
+        statistics.median(a["cpu_seconds"] for a in answers if len(a["case"]["effects"]) == count) for count in range(3)
+    )
+    longest = max(a["cpu_seconds"] for a in answers) / 60.0
+    return (
+        f"One core takes {none:.0f} s for a case with nothing hidden, {one:.0f} s with one effect, {two:.0f} s with two\n"
+        f"(medians), and {longest:.0f} minutes at most.\n"
+    )
+
+
 @dataclass(frozen=True)
 class Table:
     """A table of a document: its name in the comments, the numbers it is made of, and how."""
@@ -128,6 +143,7 @@ TABLES = (
     Table("hidden-effects", README, HIDDEN / "table.json", hidden_effects_words),
     Table("hidden-effects", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.md", hidden_effects_table),
     Table("methods", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.json", methods_table),
+    Table("times", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.json", times_words),
 )
 
 
