@@ -12,7 +12,7 @@ from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.origin import with_origin
 from flexarm_env.identify.problem import score
 from flexarm_env.identify.recording import Recording
-from flexarm_env.identify.refit import Progress, best_refit, estimates, with_all
+from flexarm_env.identify.refit import Progress, best_refit, estimates, free_coordinates, with_all
 from flexarm_env.identify.results import Addition, Estimate, Fit
 from flexarm_env.identify.screen import refit_effect
 from flexarm_env.identify.split import refit_and_split
@@ -29,11 +29,16 @@ def fit(arm: Arm, recordings: Sequence[Recording], progress: Progress | None = N
         jobs: threads.
 
     Raises:
-        InputError: for recordings that do not fit the arm.
+        InputError: for recordings that do not fit the arm, and for an arm that leaves nothing to fit.
     """
     began = time.perf_counter()
     say = progress or (lambda done, text: None)
     nominal, data = prepare(arm, recordings)
+    if not free_coordinates(nominal, nominal, data):
+        raise InputError(
+            f"arm '{arm.name}' leaves nothing to fit: every constant is fixed, known exactly or 0; "
+            "take names out of `fixed`, or add an effect with `flexarm add`"
+        )
     say(0.05, "refitting the constants")
     with in_threads(jobs):
         found = best_refit(nominal, data)

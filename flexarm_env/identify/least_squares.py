@@ -77,6 +77,8 @@ def jacobian(residual: Residual, x: Floats, steps: Floats, first: int = 0) -> Fl
         below[k] -= width
         return (residual(above) - residual(below)) / (2.0 * width)
 
+    if not len(steps):
+        return np.zeros((len(residual(x)), 0))
     columns = Parallel(prefer="threads")(delayed(column)(k, width) for k, width in enumerate(steps, start=first))
     return np.nan_to_num(np.stack(columns, axis=1))
 

@@ -69,7 +69,7 @@ def settled(problem: Problem, x: Floats) -> Floats:
         x: where a fit ended (x,).
     """
     x, _ = best_scale(problem, x, force_powers(problem.arm, problem.coordinates))
-    if np.sqrt(np.mean((problem.sigma / problem.data.noise) ** 2)) > LACKS:
+    if not len(x) or np.sqrt(np.mean((problem.sigma / problem.data.noise) ** 2)) > LACKS:
         return x
 
     def cost(there: Floats) -> float:
