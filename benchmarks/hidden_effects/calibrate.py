@@ -14,9 +14,9 @@ from benchmarks.hidden_effects.effects import CATALOGUE, OUTSIDE, Hidden
 from benchmarks.hidden_effects.machine import record
 from flexarm_env import Arm
 from flexarm_env.files import write_whole
-from flexarm_env.identify.data import prepare
-from flexarm_env.identify.problem import score
-from flexarm_env.identify.refit import refit
+from flexarm_env.identify.calibrate.calibrator import Calibrator
+from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.replay.error_measure import score
 
 #: Strengths that are met to this share, in at most so many trials, and by how much (a logarithm) one may be missed.
 NEAR, TRIALS, MISSED = 0.15, 5, 0.35
@@ -31,7 +31,7 @@ def strength_at(hidden: Hidden, size: float) -> float:
     settings = in_commands(hidden, {hidden.setting: size, **middle}, EXPERIMENTS[0], seed=1)
     case = Case("", "one", (), 0.0, settings, EXPERIMENTS[0], seed=1)
     arm, data = prepare(Arm.load("thesis-fem"), record(case))
-    found = refit(arm, arm, data)
+    found = Calibrator(arm, data).calibrate(arm)
     error = min(score(found.arm, data).windows, score(arm, data).windows)
     return math.sqrt(max(error**2 - 1.0, 0.0))
 

@@ -16,10 +16,10 @@ from pysindy import STLSQ
 
 from benchmarks.hidden_effects.baselines import answer
 from flexarm_env import Arm, Recording
-from flexarm_env.identify.data import prepare
-from flexarm_env.identify.hub_torque import acts_on_hub, hub_torque, law_torque
-from flexarm_env.identify.refit import best_refit, refit
-from flexarm_env.identify.screen import first_start
+from flexarm_env.identify.calibrate.calibrator import Calibrator
+from flexarm_env.identify.explain.hub_torque import acts_on_hub, hub_torque, law_torque
+from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.select.starts import first_start
 
 Floats = NDArray[np.float64]
 
@@ -76,12 +76,12 @@ def sparse_effects(arm: Arm, recordings: Sequence[Recording]) -> list[str]:
 
 def sindy_on_residuals(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
     """Name the effects that SINDy finds in what the refitted arm leaves, and refit the arm with the first three."""
-    nominal, data = prepare(arm, recordings)
-    base = found = best_refit(nominal, data)
+    calibrator = Calibrator(*prepare(arm, recordings))
+    base = found = calibrator.constants()
     effects = sparse_effects(base.arm, recordings)[:3]
     if effects:
         with_them = base.arm
         for name in effects:
-            with_them = with_them.with_effect(name, **first_start(with_them, name, data.scales))
-        found = refit(with_them, nominal, data)
-    return answer(effects, nominal, base, found, data)
+            with_them = with_them.with_effect(name, **first_start(with_them, name, calibrator.dataset))
+        found = calibrator.calibrate(with_them)
+    return answer(effects, calibrator, base, found)

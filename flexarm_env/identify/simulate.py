@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError, did_you_mean
-from flexarm_env.identify.load import check_load, loaded, payload_of
 from flexarm_env.identify.recording import Recording
+from flexarm_env.identify.replay.payload import check_payload, stated_payload, with_payload
 from flexarm_env.plant import layout
 
 Floats = NDArray[np.float64]
@@ -90,8 +90,8 @@ def simulate(
         draws = _noise(arm, len(time), seed, label) if noise else None
         even, interval = _sampling(time)
         conditions = {key: value for key, value in source.conditions.items() if key == "payload"}
-        check_load(arm, source)
-        carrying = loaded(arm, payload_of(source))
+        check_payload(arm, source)
+        carrying = with_payload(arm, stated_payload(source))
         readings = _Rig(carrying, 1.0 / interval, len(time), draws).replay(commands, () if even else (np.diff(time),))
     signals = {signal: readings[:, i] for i, signal in enumerate(arm.signals)}
     return Recording.from_arrays(name or label, time, arm.input, commands, signals, reference, conditions)

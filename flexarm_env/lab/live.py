@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.data import prepare
-from flexarm_env.identify.load import loaded
-from flexarm_env.identify.predict import replay
-from flexarm_env.identify.problem import Score, score
 from flexarm_env.identify.recording import Recording
-from flexarm_env.identify.run import Run
+from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.replay.error_measure import Score, score
+from flexarm_env.identify.replay.payload import with_payload
+from flexarm_env.identify.replay.replay import replay
+from flexarm_env.identify.replay.run import Run
 
 Floats = NDArray[np.float64]
 
@@ -70,5 +70,5 @@ class Live:
         return replace(arm, sensors={signal: arm.sensors[signal] for signal in self._sensors})
 
     def _replay(self, arm: Arm, run: Run) -> Floats:
-        plant = loaded(arm, run.payload).plant(self.data.interval)
-        return replay(plant, run, self.data.noise)
+        plant = with_payload(arm, run.payload).plant(self.data.interval)
+        return replay(plant, run, self.data)

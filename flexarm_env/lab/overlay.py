@@ -10,7 +10,7 @@ import plotly.graph_objects as go
 from numpy.typing import NDArray
 from plotly.subplots import make_subplots
 
-from flexarm_env.identify.run import Run
+from flexarm_env.identify.replay.run import Run
 from flexarm_env.pictures import words
 from flexarm_env.pictures.overlays import title
 from flexarm_env.pictures.plots import digits, finished, legend

@@ -14,8 +14,8 @@ from flexarm_env.arm_file import arm_text
 from flexarm_env.cli import outputs
 from flexarm_env.cli.report import report
 from flexarm_env.errors import InputError
-from flexarm_env.identify.data import prepare
 from flexarm_env.identify.recording import Recording
+from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.results import Addition, Diagnosis
 from flexarm_env.lab.job import DONE, Job, Progress
 from flexarm_env.lab.live import Live

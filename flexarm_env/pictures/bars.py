@@ -8,7 +8,8 @@ from typing import Any
 
 import plotly.graph_objects as go
 
-from flexarm_env.identify.results import Candidate, Diagnosis, Estimate
+from flexarm_env.identify.calibrate.estimate import Estimate
+from flexarm_env.identify.results import Candidate, Diagnosis
 from flexarm_env.pictures import words
 from flexarm_env.pictures.plots import finished
 from flexarm_env.pictures.style import AFTER, AFTER_BAR, BEFORE_BAR, INK, QUIET_BAR

@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 
 from flexarm_env.arm import short_name
-from flexarm_env.identify.results import Addition, Candidate, Comparison, Diagnosis, Estimate
+from flexarm_env.identify.calibrate.estimate import Estimate
+from flexarm_env.identify.results import Addition, Candidate, Comparison, Diagnosis
 
 #: What a person calls each signal, and its unit.
 LABELS = {

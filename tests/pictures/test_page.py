@@ -16,7 +16,7 @@ pytest.importorskip("plotly")
 from picture_results import SIGNALS, comparison, diagnosis, recordings
 from plotly.offline import get_plotlyjs
 
-from flexarm_env.identify.hiding import Hiding
+from flexarm_env.identify.explain.detection_limits import DetectionLimit
 from flexarm_env.identify.next_run import NextRun
 from flexarm_env.pictures.page import Findings, page
 
@@ -142,7 +142,7 @@ def test_what_could_hide_and_the_next_run_are_shown_where_they_are_known():
     assert "What could still hide" not in plain
     assert "The next run" not in plain
     run = NextRun("slow ramps", ("stiction", "stribeck"), 2.5, np.arange(50) * 0.01, np.linspace(-1.0, 1.0, 50), "current")
-    found = replace(diagnosis(), smallest={"stiction": Hiding("extra", 0.0123, "N*m")}, next_run=run)
+    found = replace(diagnosis(), smallest={"stiction": DetectionLimit("extra", 0.0123, "N*m")}, next_run=run)
     text = one_of(comparison(200, 0), comparison(200, 3), diagnosis=found)
     words = visible(text)
     assert re.search(r"stiction\s+extra\s+0.0123\s+N·m", words)
