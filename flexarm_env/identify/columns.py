@@ -20,7 +20,7 @@ CALIBRATED = tuple(name for name in (*SIGNALS, "reference") if UNITS[name] != "V
 
 _SETTINGS: dict[str, type] = {"delimiter": str, "header_prefix": str, "skip_rows": int, "decimal": str}
 _PLACES: dict[str, type] = {"column": str, "index": int, "variable": str}
-_NATIVE = re.compile(r"\s*(.*?)\s*\[\s*(.*?)\s*\]\s*")
+_NATIVE = re.compile(r"([^\[]*+)\[([^\]]*+)\]")
 
 
 @dataclass(frozen=True)
@@ -91,16 +91,17 @@ def native_sources(header: Sequence[str]) -> dict[str, Source]:
     """
     sources: dict[str, Source] = {}
     for index, cell in enumerate(header):
-        match = _NATIVE.fullmatch(cell)
-        name = match[1] if match else re.split(r"[\s(\[]", cell.strip())[0]
+        match = _NATIVE.fullmatch(cell.strip())
+        name = match[1].strip() if match else re.split(r"[\s(\[]", cell.strip(), maxsplit=1)[0]
         where = f"column {index + 1} of the header"
         if name not in UNITS:
             raise InputError(f"{where}: unknown column {name[:60]!r}{did_you_mean(name, UNITS)}")
-        if match is None or not match[2]:
+        unit = match[2].strip() if match else ""
+        if not unit:
             raise InputError(f"{where}: '{name}' has no unit in brackets; write '{name} [{UNITS[name]}]'")
         if name in sources:
             raise InputError(f"{where}: '{name}' comes twice; keep one of the two")
-        sources[name] = Source(index, match[2])
+        sources[name] = Source(index, unit)
     return sources
 
 

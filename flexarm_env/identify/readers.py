@@ -7,6 +7,7 @@ import csv
 import difflib
 import re
 import stat
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,8 +22,12 @@ from flexarm_env.identify.columns import ColumnMap, Source, check_names, native_
 LARGEST_FILE = 256 * 2**20
 CONDITIONS = {"payload": "kg", "start": "s"}
 
-_CONDITION = re.compile(r"#+\s*([A-Za-z_]\w*)\s*(?:\[(.*?)\]\s*)?([=:])\s*(.*?)\s*")
-_DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d+\s*")
+# Possessive throughout, so that no line takes time that grows faster than its length.
+_CONDITION = re.compile(r"([A-Za-z_]\w*+)\s*+(?:\[([^\]]*+)\]\s*+)?([=:])\s*+(.*+)")
+_STATEMENT = re.compile(r"([A-Za-z_]\w*+)\s*+(?:\[([^\]]*+)\]\s*+)?(?:(?:is|was|of|->)(?!\w)|[=:]++)?+\s*+(.*+)")
+_VALUE = re.compile(r"([+-]?+(?:\d++(?:[.,]\d*+)?+|\.\d++)(?:[eE][+-]?+\d++)?+)\s*+([A-Za-zµμ]*+)(.*+)")
+_DECIMAL_COMMA = re.compile(r"\s*+[+-]?+\d++,\d++\s*+")
+_COMMA_AND_THREE = re.compile(r"\s*+[+-]?+[1-9]\d{0,2}+(?:,\d{3})++\s*+")
 
 
 @dataclass(frozen=True)
@@ -95,12 +100,17 @@ def read_text_table(content: bytes, columns: ColumnMap | None, measured: bool = 
     header, body = _header(lines, first, layout)
     sources = native_sources(header) if columns is None else _places(header, layout)
     check_names(tuple(sources), measured)
-    numbers = [row for row in range(body, len(lines)) if lines[row].strip()]
+    numbers = [row for row in range(body, len(lines)) if not _is_blank(lines[row], layout.delimiter)]
     if not numbers:
         raise InputError(f"has no samples after row {body}; it needs at least two rows of numbers")
     labels = {int(source.place): name for name, source in sources.items()}
-    width = len(header) if columns is None else len(_cells(lines[numbers[0]], layout.delimiter))
-    table = _numbers([lines[row] for row in numbers], numbers, labels, width, layout)
+    rows = [lines[row] for row in numbers]
+    counts = [_count(row, layout.delimiter) for row in rows]
+    width = len(header) if columns is None else _usual(counts)
+    if any(isinstance(source.place, str) for source in layout.sources.values()):
+        _check_header(header, body, labels, width, layout.delimiter)
+    even = counts.count(width) == len(rows)
+    table = _numbers(rows, numbers, labels, width, even, layout)
     values = {name: np.ascontiguousarray(table[:, i]) for i, name in enumerate(labels.values())}
     return Table(values, sources, conditions, [row + 1 for row in numbers])
 
@@ -116,12 +126,17 @@ def _decode(content: bytes) -> str:
     return text
 
 
+def _is_blank(line: str, delimiter: str = " ") -> bool:
+    """Whether a line holds nothing but spaces and tabs, and no empty cells."""
+    return not line.strip(" \t") and (delimiter == " " or delimiter not in line)
+
+
 def _preamble(lines: Sequence[str], skip: int) -> tuple[int, dict[str, float]]:
     """Return the number of lines before the header, and the conditions that they state."""
     conditions: dict[str, float] = {}
     for row in range(skip, len(lines)):
         line = lines[row].strip()
-        if line and not line.startswith("#"):
+        if not line.startswith("#") and not _is_blank(lines[row]):
             return row, conditions
         try:
             _add_condition(line, conditions)
@@ -131,22 +146,44 @@ def _preamble(lines: Sequence[str], skip: int) -> tuple[int, dict[str, float]]:
 
 
 def _add_condition(line: str, conditions: dict[str, float]) -> None:
-    """Add what a line such as `# payload = 0.3 kg` or `# payload [kg]: 0.3` states; other remarks are none of our business."""
-    match = _CONDITION.fullmatch(line)
-    if match is None:
+    """Add the condition that a line such as `# payload = 0.3 kg` or `# payload [kg]: 0.3` states; other remarks are let be."""
+    text = line.lstrip("#").strip()
+    match = _CONDITION.fullmatch(text)
+    if match is None or (match[3] == ":" and match[1] not in CONDITIONS):
+        _check_remark(text)
         return
-    name, text = match[1], f"{match[4]} {match[2] or ''}".strip()
-    if match[3] == ":" and name not in CONDITIONS:
-        return
+    name, value = match[1], f"{match[4]} {match[2] or ''}".strip()
     if name in conditions:
-        raise InputError(f"condition '{name}' comes twice; keep one of the two")
+        raise InputError(f"condition {shown(name)} comes twice; keep one of the two")
     if name in CONDITIONS:
-        conditions[name] = units.quantity(text, CONDITIONS[name])
+        conditions[name] = units.quantity(value, CONDITIONS[name])
     elif difflib.get_close_matches(name.lower(), CONDITIONS, cutoff=0.8):
         raise InputError(f"unknown condition {shown(name)}{did_you_mean(name.lower(), CONDITIONS)}")
-    elif units.is_quantity(text):
+    elif units.is_quantity(value):
         with contextlib.suppress(InputError):  # "# trial = 3 good" is a remark
-            conditions[name] = units.base_value(text)
+            conditions[name] = units.base_value(value)
+
+
+def _check_remark(text: str) -> None:
+    """Refuse a remark such as "payload 0.3 kg" or "tip payload: 0.3 kg", which would be lost as a condition."""
+    _, _, later = text.partition(" ")
+    for part in (text, later.lstrip()):
+        match = _STATEMENT.fullmatch(part)
+        near = match and difflib.get_close_matches(match[1].lower(), CONDITIONS, n=1, cutoff=0.8)
+        value = _VALUE.fullmatch(f"{match[3]} {match[2] or ''}".strip()) if match and near else None
+        if match is None or not near or value is None:
+            continue
+        name, number, unit, rest = near[0], value[1].replace(",", "."), value[2], value[3]
+        bare = not unit and not rest.strip() and match[1].lower() == name
+        if bare or (unit and len(unit) < 10 and _measures(unit, CONDITIONS[name])):
+            raise InputError(f"{shown(part)} is a remark; did you mean '# {name} = {number} {unit or CONDITIONS[name]}'?")
+
+
+def _measures(unit: str, target: str) -> bool:
+    try:
+        return units.converts(unit, target)
+    except InputError:
+        return False
 
 
 def _header(lines: Sequence[str], first: int, layout: ColumnMap) -> tuple[list[str], int]:
@@ -203,7 +240,9 @@ def _hint(text: str, texts: Sequence[str]) -> str:
 
 def _cells(line: str, delimiter: str) -> list[str]:
     if delimiter == " ":
-        return line.split()
+        if '"' not in line:
+            return line.split()
+        line = " ".join(line.split())
     try:
         return next(csv.reader([line], delimiter=delimiter), [])
     except csv.Error as error:
@@ -227,7 +266,9 @@ def _point(cell: str, decimal: str) -> str:
     return cell.translate({ord("."): "'", ord(","): "."}) if decimal == "," else cell
 
 
-def _numbers(rows: list[str], lines: Sequence[int], labels: dict[int, str], width: int, layout: ColumnMap) -> NDArray[np.float64]:
+def _numbers(
+    rows: list[str], lines: Sequence[int], labels: dict[int, str], width: int, even: bool, layout: ColumnMap
+) -> NDArray[np.float64]:
     """Return the (n, len(labels)) numbers of the columns in `labels`.
 
     Args:
@@ -235,12 +276,13 @@ def _numbers(rows: list[str], lines: Sequence[int], labels: dict[int, str], widt
         lines: the index of each in the file.
         labels: the name of each column wanted, by its 0-based number.
         width: cells that every row must have.
+        even: whether every row has.
         layout: delimiter and decimal mark.
     """
-    # numpy's reader is fast and does not say where a fault is, so Python reads again what numpy refuses.
+    # numpy's reader is fast, does not say where a fault is, and checks no width: Python reads again what is not plain.
     delimiter = layout.delimiter
-    even = delimiter == " " or all(row.count(delimiter) == width - 1 for row in rows)
-    if even and max(labels) < width:
+    plain = delimiter != " " or not any('"' in row for row in rows)
+    if plain and even and max(labels) < width:
         try:
             read = np.loadtxt(
                 rows if layout.decimal == "." else [_point(row, layout.decimal) for row in rows],
@@ -257,6 +299,33 @@ def _numbers(rows: list[str], lines: Sequence[int], labels: dict[int, str], widt
     return np.array(list(_slowly(rows, lines, labels, width, layout)), dtype=np.float64)
 
 
+def _count(row: str, delimiter: str) -> int:
+    """Count the cells of a row; 0 if it cannot be cut into cells."""
+    if '"' not in row:
+        return len(row.split()) if delimiter == " " else row.count(delimiter) + 1
+    try:
+        return len(_cells(row, delimiter))
+    except InputError:
+        return 0
+
+
+def _usual(counts: Sequence[int]) -> int:
+    """Return the number of cells that most rows have; of two that are as frequent, the larger."""
+    often = Counter(counts)
+    return max(often, key=lambda count: (often[count], count))
+
+
+def _check_header(header: Sequence[str], row: int, labels: dict[int, str], width: int, delimiter: str) -> None:
+    """Refuse a header by whose cells columns cannot be counted. Empty ones may end it, and nameless columns the rows."""
+    named = len(header)
+    while named and not header[named - 1].strip():
+        named -= 1
+    if named > width or (named < width and delimiter == " "):
+        beyond = next((f", none for '{name}'" for index, name in labels.items() if index >= width), "")
+        hint = "is there a blank in a name? give 'index' in place of 'column'" if delimiter == " " else "is the delimiter right?"
+        raise InputError(f"row {row}: the header has {named} names, the rows have {width} cells{beyond}; {hint}")
+
+
 def _slowly(
     rows: list[str], lines: Sequence[int], labels: dict[int, str], width: int, layout: ColumnMap
 ) -> Iterator[list[float]]:
@@ -271,7 +340,7 @@ def _slowly(
         except InputError as error:
             raise InputError(f"{where}: {error}") from None
         if len(cells) != width:
-            hint = "write 0.5, not 0,5" if layout.delimiter == "," else "is the row cut off?"
+            hint = _width_hint(row, len(cells), width, layout.delimiter)
             raise InputError(f"{where}: has {len(cells)} cells where {width} are expected; {hint}")
         for index, name in labels.items():
             if not _is_number(cells[index], layout.decimal):
@@ -279,9 +348,21 @@ def _slowly(
         yield [float(_point(cells[index], layout.decimal)) for index in labels]
 
 
+def _width_hint(row: str, found: int, expected: int, delimiter: str) -> str:
+    if row.lstrip().startswith("#"):
+        return "a remark stands before the header; move it there or remove it"
+    if found < expected:
+        return "is the row cut off?"
+    commas = " Or decimal commas: write 0.5, not 0,5" if delimiter == "," else ""
+    return f"are two rows run together, or does the header lack a name?{commas}"
+
+
 def _not_a_number(cell: str) -> str:
     if not cell.strip():
-        return "is empty; fill it in or remove the row"
+        return "is empty; a number made up would spoil the comparison: remove the row, or the column"
+    if _COMMA_AND_THREE.fullmatch(cell):
+        whole = cell.strip().replace(",", "")
+        return f"{shown(cell)} has a comma, which may mark thousands or decimals; write {shown(whole)[1:-1]} or a decimal point"
     if _DECIMAL_COMMA.fullmatch(cell):
-        return f"{shown(cell)} has a decimal comma; write {cell.strip().replace(',', '.')}"
+        return f"{shown(cell)} has a decimal comma; write {shown(cell.strip().replace(',', '.'))[1:-1]}"
     return f"{shown(cell)} is not a number; correct it or remove the row"
