@@ -67,7 +67,16 @@ def load(paths: list[Path], name: str, columns: Path | None, specs: Sequence[str
     from flexarm_env.cli import inputs
 
     arm = load_arm(name, specs)
-    return arm, inputs.read_recordings(arm, paths, columns)
+    recordings = inputs.read_recordings(arm, paths, columns)
+    show_notes(recordings)
+    return arm, recordings
+
+
+def show_notes(recordings: Sequence[Recording]) -> None:
+    """Say on stderr how files were read, where a person might expect otherwise."""
+    for recording in recordings:
+        for note in recording.notes:
+            typer.echo(f"Note: {recording.source}: {note}", err=True)
 
 
 def save_arm(arm: Arm, path: Path | None, hint: bool = False) -> None:

@@ -125,12 +125,14 @@ def simulate(
     json: Path | None,
 ) -> None:
     """Make a recording and write it; `settings` are duration [s], rate [Hz], seed and whether there is noise."""
+    from flexarm_env.cli.arguments import show_notes
     from flexarm_env.cli.inputs import read_recordings
     from flexarm_env.identify.simulate import EXPERIMENTS
 
     played: str | Recording = source
     if source and source not in EXPERIMENTS and Path(source).exists():
         found = read_recordings(arm, [Path(source)], columns, measured=False)
+        show_notes(found)
         if len(found) != 1:
             raise InputError(f"{source}: holds {len(found)} recordings; name one")
         played = found[0]

@@ -115,6 +115,18 @@ def read_text_table(content: bytes, columns: ColumnMap | None, measured: bool = 
     return Table(values, sources, conditions, [row + 1 for row in numbers])
 
 
+def read_header(head: bytes) -> list[str]:
+    """Return the cells of the header of a file that begins with these bytes and has no column map.
+
+    Raises:
+        InputError: if there is no such header.
+    """
+    whole, _, _ = head.replace(b"\r", b"\n").rpartition(b"\n")  # the last line may be cut off, within a character, too
+    lines = _decode(whole or head).split("\n")
+    first, _ = _preamble(lines, 0)
+    return _header(lines, first, ColumnMap())[0]
+
+
 def _decode(content: bytes) -> str:
     try:
         text = content.decode("utf-8-sig")

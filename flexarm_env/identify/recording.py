@@ -44,6 +44,7 @@ class Recording(Shown):
             before the first sample.
         source: the path it was read from; "" if from none.
         sha256: of that file's content; "" if from none.
+        notes: one line each on how the file was read, where a person might expect otherwise.
         gaps: for each step over three median steps, the index of the sample before it and its length [s].
     """
 
@@ -56,6 +57,7 @@ class Recording(Shown):
     conditions: dict[str, float] = field(default_factory=dict)
     source: str = ""
     sha256: str = ""
+    notes: tuple[str, ...] = ()
     gaps: list[tuple[int, float]] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -173,7 +175,7 @@ class Recording(Shown):
         files = files_of([paths] if isinstance(paths, (str, os.PathLike)) else paths)
         layout = None if columns is None else load_columns(columns, measured)
         recordings = [cls.read(file, layout, calibration, measured) for file in files]
-        return _distinct(recordings)
+        return with_distinct_names(recordings)
 
     def write(self, path: PathLike) -> None:
         """Write a CSV file that `read` gives back bit for bit; the file is whole or not there.
@@ -263,7 +265,7 @@ def _recording(
     )
 
 
-def _distinct(recordings: list[Recording]) -> list[Recording]:
+def with_distinct_names(recordings: Sequence[Recording]) -> list[Recording]:
     """Return recordings whose names differ: by their folder, else by their path."""
     sources = [Path(recording.source) for recording in recordings]
     for names in (

@@ -62,13 +62,14 @@ class Session:
         return self.job is not None and self.job.state == "running"
 
     def upload(self, files: Sequence[tuple[str, bytes]]) -> list[str]:
-        """Take in uploaded files, by name and content; return a line for each that is not taken."""
+        """Take in uploaded files, by name and content; return a line for each that is not taken or that is to be noted."""
         taken, lines = list(self.recordings), []
         for name, content in files:
             try:
                 found = read_upload(self.base, name, content, self.columns, taken)
                 prepare(self.base, [*taken, found])
                 taken.append(found)
+                lines += [f"{found.source}: {note}" for note in found.notes]
             except InputError as error:
                 lines.append(str(error))
         if len(taken) > len(self.recordings):
