@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from flexarm_env.arm import Arm
-    from flexarm_env.identify.recording import Recording
+    from flexarm_env.recordings.recording import Recording
 
 
 def check(

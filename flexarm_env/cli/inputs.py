@@ -10,10 +10,10 @@ from flexarm_env.arm import Arm
 from flexarm_env.effects import Catalogue, catalogue
 from flexarm_env.effects.catalogue import load_effect
 from flexarm_env.errors import InputError
-from flexarm_env.identify.columns import CALIBRATED, load_columns
-from flexarm_env.identify.recording import Recording, with_distinct_names
-from flexarm_env.identify.recording_files import files_of
-from flexarm_env.identify.recording_layout import layout_of
+from flexarm_env.recordings.arm_columns import layout_of
+from flexarm_env.recordings.columns import CALIBRATED, load_columns
+from flexarm_env.recordings.files import files_of
+from flexarm_env.recordings.recording import Recording, with_distinct_names
 
 
 def known_effects(specs: Sequence[str]) -> Catalogue:

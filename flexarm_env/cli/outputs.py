@@ -15,7 +15,7 @@ from typing import Any
 import flexarm_env
 from flexarm_env.errors import InputError
 from flexarm_env.files import write_whole
-from flexarm_env.identify.recording import Recording
+from flexarm_env.recordings.recording import Recording
 
 STDOUT = Path("-")
 

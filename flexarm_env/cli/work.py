@@ -17,8 +17,8 @@ from flexarm_env.cli import outputs, tables
 from flexarm_env.cli.progress import progress
 from flexarm_env.effects.catalogue import load_effect
 from flexarm_env.errors import InputError
-from flexarm_env.identify.recording import Recording
 from flexarm_env.pictures import words
+from flexarm_env.recordings.recording import Recording
 
 if TYPE_CHECKING:
     from flexarm_env.identify.results import Addition, Comparison, Diagnosis, Fit
@@ -127,7 +127,7 @@ def simulate(
     """Make a recording and write it; `settings` are duration [s], rate [Hz], seed and whether there is noise."""
     from flexarm_env.cli.arguments import show_notes
     from flexarm_env.cli.inputs import read_recordings
-    from flexarm_env.identify.simulate import EXPERIMENTS
+    from flexarm_env.experiments.simulate import EXPERIMENTS
 
     played: str | Recording = source
     if source and source not in EXPERIMENTS and Path(source).exists():

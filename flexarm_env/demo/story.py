@@ -11,9 +11,9 @@ from rich.text import Text
 from flexarm_env.arm import Arm
 from flexarm_env.cli import outputs, tables, work
 from flexarm_env.errors import InputError
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.results import Addition, Comparison, Diagnosis
 from flexarm_env.pictures import words
+from flexarm_env.recordings.recording import Recording
 
 ARM = "thesis-fem"
 JOBS = 2

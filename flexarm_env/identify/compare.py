@@ -11,10 +11,10 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.data import Data, prepare
 from flexarm_env.identify.predict import replay, window_observers, window_replay
 from flexarm_env.identify.preflight import preflight
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.refit import Progress
 from flexarm_env.identify.results import Comparison, Replay, Row
 from flexarm_env.identify.run import Run
+from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
 

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
-from flexarm_env.identify.load import check_load, loaded_plants, payload_of
-from flexarm_env.identify.recording import Recording
+from flexarm_env.experiments.payload import check_load, loaded_plants, payload_of
 from flexarm_env.identify.run import Run, cut
 from flexarm_env.identify.scales import scales_of
 from flexarm_env.identify.start import find_start
 from flexarm_env.plant.plant import NO_INTERVALS, Plant
+from flexarm_env.recordings.recording import Recording
 from flexarm_env.signals import INPUTS
 
 Floats = NDArray[np.float64]

@@ -7,20 +7,20 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from flexarm_env.arm import Arm, short_name
+from flexarm_env.experiments.next_run import propose
 from flexarm_env.identify.acceptance import LEAST_REMOVED, PERFECT, WHOLE
 from flexarm_env.identify.data import Data, prepare
 from flexarm_env.identify.hiding import could_hide
 from flexarm_env.identify.hypothesis import excess
 from flexarm_env.identify.least_squares import in_threads
-from flexarm_env.identify.next_run import propose
 from flexarm_env.identify.origin import with_origin
 from flexarm_env.identify.preflight import preflight
 from flexarm_env.identify.problem import Score, score
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.refit import Progress, estimates, with_all
 from flexarm_env.identify.results import Candidate, Diagnosis, Estimate
 from flexarm_env.identify.search import Search
 from flexarm_env.identify.split import later_notes, refit_and_split
+from flexarm_env.recordings.recording import Recording
 
 
 def diagnose(

@@ -11,11 +11,11 @@ from flexarm_env.identify.data import prepare
 from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.origin import with_origin
 from flexarm_env.identify.problem import score
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.refit import Progress, best_refit, estimates, with_all
 from flexarm_env.identify.results import Addition, Estimate, Fit
 from flexarm_env.identify.screen import refit_effect
 from flexarm_env.identify.split import refit_and_split
+from flexarm_env.recordings.recording import Recording
 
 
 def fit(arm: Arm, recordings: Sequence[Recording], progress: Progress | None = None, seed: int = 0, jobs: int = 2) -> Fit:

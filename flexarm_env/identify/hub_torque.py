@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_are
 
 from flexarm_env.arm import Arm
+from flexarm_env.experiments.payload import loaded
 from flexarm_env.identify.data import Data, prepare
-from flexarm_env.identify.load import loaded
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.run import Run
 from flexarm_env.identify.scales import torque_scale
 from flexarm_env.linear import INPUTS, LinearArm
+from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
 

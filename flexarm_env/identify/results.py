@@ -12,8 +12,8 @@ from flexarm_env.arm import Arm
 from flexarm_env.display import Shown
 
 if TYPE_CHECKING:
+    from flexarm_env.experiments.next_run import NextRun
     from flexarm_env.identify.hiding import Hiding
-    from flexarm_env.identify.next_run import NextRun
 
 Floats = NDArray[np.float64]
 

@@ -10,10 +10,10 @@ from nicegui import events, html, run, ui
 from flexarm_env.arm import Arm
 from flexarm_env.arm_file import shipped_arms
 from flexarm_env.errors import InputError
-from flexarm_env.identify.recording import Recording
 from flexarm_env.lab.guard import LARGEST_BODY
 from flexarm_env.lab.session import Session
 from flexarm_env.lab.uploads import MOST_RECORDINGS
+from flexarm_env.recordings.recording import Recording
 
 DEMO_ARM = "thesis-fem"
 ENVELOPE = 2**16  # [bytes], of what a request has beside the files

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
+from flexarm_env.experiments.payload import loaded
 from flexarm_env.identify.data import prepare
-from flexarm_env.identify.load import loaded
 from flexarm_env.identify.predict import replay
 from flexarm_env.identify.problem import Score, score
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.run import Run
+from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
 

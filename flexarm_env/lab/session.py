@@ -15,11 +15,11 @@ from flexarm_env.cli import outputs
 from flexarm_env.cli.report import report
 from flexarm_env.errors import InputError
 from flexarm_env.identify.data import prepare
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.results import Addition, Diagnosis
 from flexarm_env.lab.job import DONE, Job, Progress
 from flexarm_env.lab.live import Live
 from flexarm_env.lab.uploads import read_upload
+from flexarm_env.recordings.recording import Recording
 
 SEED, JOBS = 0, 2
 AS_GIVEN, REFITTED, BY_HAND = "as given", "constants refitted", "by hand"

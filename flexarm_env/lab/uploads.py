@@ -8,8 +8,8 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 from flexarm_env.arm import Arm
 from flexarm_env.cli.inputs import read_recordings
 from flexarm_env.errors import InputError
-from flexarm_env.identify.recording import Recording
 from flexarm_env.lab.guard import LARGEST_BODY
+from flexarm_env.recordings.recording import Recording
 
 MOST_RECORDINGS = 12
 #: Samples of all recordings together: beyond it nothing is live any more.

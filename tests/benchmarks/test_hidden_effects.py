@@ -18,7 +18,7 @@ from benchmarks.hidden_effects.sindy import sparse_effects
 from flexarm_env.arm import Arm
 from flexarm_env.cli.outputs import commit
 from flexarm_env.effects import catalogue
-from flexarm_env.identify.simulate import simulate
+from flexarm_env.experiments.simulate import simulate
 
 
 def answer(case, effects, verdict="effects", final=1.0):

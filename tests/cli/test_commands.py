@@ -10,8 +10,8 @@ from cli_stand_ins import GOOD_ARM, HEADER, OWN, ROWS
 import flexarm_env
 from flexarm_env.arm import Arm
 from flexarm_env.effects import catalogue
-from flexarm_env.identify.recording import Recording
-from flexarm_env.identify.simulate import simulate
+from flexarm_env.experiments.simulate import simulate
+from flexarm_env.recordings.recording import Recording
 
 
 def test_compare_shows_tables_and_exits_0(flexarm, identify, runs):

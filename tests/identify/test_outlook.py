@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from flexarm_env import Arm, Recording, fit, simulate
+from flexarm_env.experiments.next_run import propose
 from flexarm_env.identify.data import prepare
 from flexarm_env.identify.hiding import Hiding, could_hide
-from flexarm_env.identify.next_run import propose
 from flexarm_env.identify.refit import as_it_is
 
 LEAST = 0.2

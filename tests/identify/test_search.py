@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 from flexarm_env import Arm
+from flexarm_env.experiments.simulate import simulate
 from flexarm_env.identify import fits
 from flexarm_env.identify.acceptance import Acceptance
 from flexarm_env.identify.data import Data, prepare
 from flexarm_env.identify.hypothesis import Hypothesis, judged
 from flexarm_env.identify.problem import Score, score
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.refit import best_refit, refit
 from flexarm_env.identify.rivals import Place, rivals_of
 from flexarm_env.identify.search import Search
-from flexarm_env.identify.simulate import simulate
+from flexarm_env.recordings.recording import Recording
 
 TRUE = {
     "asymmetric_coulomb": {"torque": 0.05},

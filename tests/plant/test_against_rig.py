@@ -11,9 +11,9 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.data import prepare
 from flexarm_env.identify.observer import innovation_sigma
 from flexarm_env.identify.problem import Problem, score
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.scales import torque_scale
 from flexarm_env.identify.screen import SCREENING_LEVELS
+from flexarm_env.recordings.recording import Recording
 from tests.rig import SIGNALS, simulate
 
 #: Half the weight of the thesis's beam of 1 m [Nm], on a base tilted by 0.02 rad.

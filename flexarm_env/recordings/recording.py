@@ -15,11 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 from flexarm_env.display import Shown
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import write_whole
-from flexarm_env.identify.columns import UNITS, ColumnMap, check_calibration, check_names, load_columns, si_factor
-from flexarm_env.identify.matlab import read_matlab
-from flexarm_env.identify.readers import CONDITIONS, Table, fault, read_bytes, read_text_table
-from flexarm_env.identify.recording_checks import as_vector, check_conditions, check_samples
-from flexarm_env.identify.recording_files import PathLike, files_of
+from flexarm_env.recordings.checks import as_vector, check_conditions, check_samples
+from flexarm_env.recordings.columns import UNITS, ColumnMap, check_calibration, check_names, load_columns, si_factor
+from flexarm_env.recordings.files import PathLike, files_of
+from flexarm_env.recordings.formats.matlab import read_matlab
+from flexarm_env.recordings.formats.text import CONDITIONS, Table, fault, read_bytes, read_text_table
 from flexarm_env.signals import INPUTS, SIGNALS
 
 Floats = NDArray[np.float64]

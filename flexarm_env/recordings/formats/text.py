@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from flexarm_env import units
 from flexarm_env.errors import InputError, did_you_mean
-from flexarm_env.identify.columns import ColumnMap, Source, check_names, native_sources
+from flexarm_env.recordings.columns import ColumnMap, Source, check_names, native_sources
 
 LARGEST_FILE = 256 * 2**20
 CONDITIONS = {"payload": "kg", "start": "s"}

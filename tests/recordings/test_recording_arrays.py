@@ -15,9 +15,9 @@ from hypothesis.extra.numpy import arrays
 from recording_files import example, same, save
 
 from flexarm_env.errors import InputError
-from flexarm_env.identify import readers
-from flexarm_env.identify.columns import SIGNALS, UNITS
-from flexarm_env.identify.recording import Recording
+from flexarm_env.recordings.columns import SIGNALS, UNITS
+from flexarm_env.recordings.formats import text as readers
+from flexarm_env.recordings.recording import Recording
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.errors import InputError, did_you_mean
-from flexarm_env.identify.columns import ColumnMap
-from flexarm_env.identify.readers import LARGEST_FILE, Table
+from flexarm_env.recordings.columns import ColumnMap
+from flexarm_env.recordings.formats.text import LARGEST_FILE, Table
 
 # The MAT-file format, table "MAT-file data types"; the gaps are reserved.
 _MATRIX, _COMPRESSED = 14, 15

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from flexarm_env.errors import InputError
-from flexarm_env.identify.columns import ColumnMap, Source, native_sources
-from flexarm_env.identify.readers import read_header
+from flexarm_env.recordings.columns import ColumnMap, Source, native_sources
+from flexarm_env.recordings.formats.text import read_header
 
 #: Bytes of a file in which its header must lie.
 _HEAD = 1 << 16

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from flexarm_env.errors import InputError
-from flexarm_env.identify.readers import fault
+from flexarm_env.recordings.formats.text import fault
 
 PathLike = str | os.PathLike[str]
 

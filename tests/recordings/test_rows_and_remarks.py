@@ -18,8 +18,8 @@ from recording_files import GOOD, HEADER, refusal, save
 from flexarm_env import units
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
-from flexarm_env.identify.recording import Recording
 from flexarm_env.lab.uploads import read_upload
+from flexarm_env.recordings.recording import Recording
 
 MANY = 1_000_000
 NAMES = ("time", "current", "arm_angle")

@@ -1,0 +1,1 @@
+"""Formats of recording files: one module each."""
