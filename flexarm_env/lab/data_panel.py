@@ -13,6 +13,7 @@ from flexarm_env.errors import InputError
 from flexarm_env.lab.guard import LARGEST_BODY
 from flexarm_env.lab.session import Session
 from flexarm_env.lab.uploads import MOST_RECORDINGS
+from flexarm_env.recordings.formats.catalogue import suffixes
 from flexarm_env.recordings.recording import Recording
 
 DEMO_ARM = "thesis-fem"
@@ -119,7 +120,7 @@ def _drop_zone(upload: ui.upload) -> None:
     take = f"getElement({upload.id}).$refs.qRef.addFiles"
     with html.label().classes("drop") as zone:
         html.span("Drop CSV files here, or choose some")
-        chosen = ui.element("input").props("type=file multiple accept=.csv,.txt,.dat,.mat")
+        chosen = ui.element("input").props(f"type=file multiple accept={','.join(suffixes())}")
     chosen.on("change", js_handler=f"(e) => {{ {take}([...e.target.files]); e.target.value = '' }}")
     mark = "e.currentTarget.classList"
     zone.on("dragover", js_handler=f"(e) => {{ e.preventDefault(); {mark}.add('over') }}")

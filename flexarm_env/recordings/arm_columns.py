@@ -30,7 +30,7 @@ def layout_of(path: Path, columns: ColumnMap, measured: bool = True) -> tuple[Co
     own, texts = _own_header(path)
     if "time" not in own:
         return columns, ""
-    by_number = all(isinstance(source.place, int) for source in columns.sources.values())
+    by_number = all(source.key == "index" for source in columns.sources.values())
     found = _found(columns, texts)
     differing = [name for name, source in found.items() if own.get(name) != source]
     if len(found) == len(columns.sources):
@@ -56,13 +56,13 @@ def _own_header(path: Path) -> tuple[dict[str, Source], list[str]]:
 
 def _found(columns: ColumnMap, texts: list[str]) -> dict[str, Source]:
     """Return the sources of a map that lie in a header of FlexArm's own, with numbers in the place of texts."""
-    if columns.matlab or columns.delimiter != "," or columns.header_prefix:
+    if columns.delimiter != "," or columns.header_prefix:
         return {}
     numbers = {text.strip(): number for number, text in enumerate(texts)}
     found = {}
     for name, source in columns.sources.items():
-        place = numbers.get(source.place.strip(), len(texts)) if isinstance(source.place, str) else source.place
-        if place < len(texts):
+        place = numbers.get(str(source.place).strip()) if source.key == "column" else source.place
+        if isinstance(place, int) and place < len(texts):
             found[name] = Source(place, source.unit, source.sign, source.scale)
     return found
 

@@ -17,9 +17,11 @@ from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import write_whole
 from flexarm_env.recordings.checks import as_vector, check_conditions, check_samples
 from flexarm_env.recordings.columns import UNITS, ColumnMap, check_calibration, check_names, load_columns, si_factor
-from flexarm_env.recordings.files import PathLike, files_of
-from flexarm_env.recordings.formats.matlab import read_matlab
-from flexarm_env.recordings.formats.text import CONDITIONS, Table, fault, read_bytes, read_text_table
+from flexarm_env.recordings.conditions import CONDITIONS
+from flexarm_env.recordings.files import PathLike, files_of, read_bytes
+from flexarm_env.recordings.formats.catalogue import format_of
+from flexarm_env.recordings.messages import file_error
+from flexarm_env.recordings.table import Table
 from flexarm_env.signals import INPUTS, SIGNALS
 
 Floats = NDArray[np.float64]
@@ -150,11 +152,11 @@ class Recording(Shown):
         path = Path(path)
         try:
             content = read_bytes(path)
-            table = _table(path, content, layout, measured)
+            table = format_of(path).table(content, layout, measured)
             arrays = {name: _si(name, table, gains) for name in table.values}
             recording = _recording(path.stem, arrays, table.conditions, table.lines, measured)
         except InputError as error:
-            raise fault(path, error) from None
+            raise file_error(path, error) from None
         return replace(recording, source=str(path), sha256=hashlib.sha256(content).hexdigest())
 
     @classmethod
@@ -216,16 +218,6 @@ class Recording(Shown):
             reference=None if self.reference is None else self.reference[cut].copy(),
             conditions=self.conditions | ({"start": before} if before else {}),
         )
-
-
-def _table(path: Path, content: bytes, layout: ColumnMap | None, measured: bool) -> Table:
-    if path.suffix.lower() != ".mat":
-        return read_text_table(content, layout, measured)
-    if layout is None:
-        raise InputError("a .mat file needs a [columns] table that names its variables")
-    if not layout.matlab:
-        raise InputError("is a .mat file, but [columns] names text columns; use 'variable'")
-    return read_matlab(content, layout)
 
 
 def _si(name: str, table: Table, calibration: Mapping[str, float]) -> Floats:
