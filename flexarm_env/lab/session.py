@@ -11,8 +11,6 @@ from typing import Any
 import flexarm_env
 from flexarm_env.arm import Arm
 from flexarm_env.arm_file import arm_text
-from flexarm_env.cli import outputs
-from flexarm_env.cli.report import report
 from flexarm_env.errors import InputError
 from flexarm_env.identify.data import prepare
 from flexarm_env.identify.results import Addition, Diagnosis
@@ -20,6 +18,8 @@ from flexarm_env.lab.job import DONE, Job, Progress
 from flexarm_env.lab.live import Live
 from flexarm_env.lab.uploads import read_upload
 from flexarm_env.recordings.recording import Recording
+from flexarm_env.terminal.provenance import provenance
+from flexarm_env.terminal.report import report
 
 SEED, JOBS = 0, 2
 AS_GIVEN, REFITTED, BY_HAND = "as given", "constants refitted", "by hand"
@@ -189,7 +189,7 @@ class Session:
         line = ["flexarm", verb, *(one.source or one.name for one in recordings), "--arm", nominal.name]
         seed = None if diagnosis is None else SEED
         made: dict[str, Any] = {"command_line": shlex.join(line + ([] if seed is None else ["--seed", str(seed)]))}
-        made |= outputs.provenance("lab", nominal.name, recordings, seed)
+        made |= provenance("lab", nominal.name, recordings, seed)
 
         def work(say: Progress) -> str:
             say(0.05, "comparing")

@@ -7,10 +7,10 @@ from dataclasses import replace
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from flexarm_env.arm import Arm
-from flexarm_env.cli.inputs import read_recordings
 from flexarm_env.errors import InputError
 from flexarm_env.lab.guard import LARGEST_BODY
 from flexarm_env.recordings.recording import Recording
+from flexarm_env.terminal.inputs import read_recordings
 
 MOST_RECORDINGS = 12
 #: Samples of all recordings together: beyond it nothing is live any more.

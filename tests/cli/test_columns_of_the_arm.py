@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 from recording_files import same
 
 from flexarm_env.arm import Arm
-from flexarm_env.cli.inputs import read_recordings
 from flexarm_env.errors import InputError
 from flexarm_env.lab.session import Session
 from flexarm_env.lab.uploads import read_upload
 from flexarm_env.recordings.recording import Recording
+from flexarm_env.terminal.inputs import read_recordings
 
 OWN = "time [s],current [A],arm_angle [rad]"
 ROWS = "".join(f"{k / 10},{k % 3},{k / 7}\n" for k in range(12))

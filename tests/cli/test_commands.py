@@ -154,7 +154,7 @@ def test_effects_shows_the_catalogue_and_each_page(flexarm):
 
 
 def test_bench_says_where_it_is(flexarm, monkeypatch):
-    from flexarm_env.cli import work
+    from flexarm_env.cli import benchmarks
 
-    monkeypatch.setattr(work, "__file__", "/nowhere/flexarm_env/cli/work.py")
+    monkeypatch.setattr(benchmarks, "__file__", "/nowhere/flexarm_env/cli/benchmarks.py")
     assert "source tree" in flexarm.refused("bench")
