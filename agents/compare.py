@@ -23,10 +23,10 @@ from agents.rollout import roll_out
 from agents.sets import FIRST_SEED, SETS
 from agents.train import FOLDER
 from flexarm_env import Arm, InputError, __version__
-from flexarm_env.cli.outputs import commit
 from flexarm_env.controllers import CONTROLLERS
 from flexarm_env.files import write_whole
 from flexarm_env.tasks import TASKS
+from flexarm_env.terminal.provenance import commit
 
 
 def find_policies(folder: Path) -> dict[str, list[Path]]:

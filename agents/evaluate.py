@@ -19,11 +19,11 @@ from agents.rollout import roll_out
 from agents.sets import FIRST_SEED, SETS
 from agents.statistics import mean_interval, paired_difference
 from flexarm_env import Arm, InputError, __version__
-from flexarm_env.cli.outputs import commit
 from flexarm_env.controllers import CONTROLLERS, make_controller
 from flexarm_env.errors import did_you_mean
 from flexarm_env.files import write_whole
 from flexarm_env.tasks import TASKS
+from flexarm_env.terminal.provenance import commit
 
 FOLDER = Path(__file__).resolve().parent.parent / "results" / "baselines"
 REFERENCE = "pd"

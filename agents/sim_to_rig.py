@@ -30,10 +30,10 @@ from agents.rig_report import report_of, verdict_of
 from agents.sets import FIRST_SEED
 from agents.train import place_of
 from flexarm_env import Arm, InputError, Recording, __version__, diagnose
-from flexarm_env.cli.outputs import commit
 from flexarm_env.controllers import make_controller
 from flexarm_env.files import write_whole
 from flexarm_env.tasks import TASKS
+from flexarm_env.terminal.provenance import commit
 from tests.rig import write_case
 
 PROJECT = Path(__file__).resolve().parent.parent

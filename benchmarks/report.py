@@ -15,8 +15,8 @@ from rich.console import Console
 from rich.table import Table
 
 import flexarm_env
-from flexarm_env.cli.outputs import commit
 from flexarm_env.files import write_whole
+from flexarm_env.terminal.provenance import commit
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from flexarm_env.identify.diagnose import diagnose
     from flexarm_env.identify.explain.compare import compare
     from flexarm_env.identify.fit import add, fit
-    from flexarm_env.identify.recording import Recording
-    from flexarm_env.identify.simulate import simulate
+    from flexarm_env.recordings.recording import Recording
 
 #: Where each public name lives: loaded at first use, so that importing the package stays quick.
 _PLACES = {
@@ -25,12 +24,12 @@ _PLACES = {
     "Effect": "effects",
     "catalogue": "effects",
     "InputError": "errors",
-    "Recording": "identify.recording",
+    "Recording": "recordings.recording",
     "add": "identify.fit",
     "compare": "identify.explain.compare",
     "diagnose": "identify.diagnose",
     "fit": "identify.fit",
-    "simulate": "identify.simulate",
+    "simulate": "experiments.simulate",
 }
 
 __all__ = [

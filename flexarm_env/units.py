@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 # A whitelist, because pint evaluates what it is given: "V**9**9**9" would not return.
 _TERM = r"[A-Za-zµμΩ°]+(?:_[A-Za-z]+)*(?: *(?:\^|\*\*) *-?\d|[²³])?"
 _UNIT = re.compile(rf"(?:1 */ *)?{_TERM}(?: *[*/·] *{_TERM}| +{_TERM})*")
-_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?:\s*$|\s*(?=[^\d\s.,:;-])(.*?)\s*$)")
+# Possessive, so that no text takes time that grows faster than its length.
+_QUANTITY = re.compile(r"([+-]?(?:\d++(?:\.\d*+)?+|\.\d++)(?:[eE][+-]?\d++)?+)\s*+(?:(?=[^\d\s.,:;-])(.*+))?+")
 _LONGEST = 60
 # Without these pint reads Nm as "number metre", a count of yarn, and the others not at all.
 _COMPOUNDS = (
@@ -138,13 +139,13 @@ def as_float(value: float) -> float:
 
 def is_quantity(text: str) -> bool:
     """Tell whether a text has the form of a number, alone or with a unit (which need not exist)."""
-    match = _QUANTITY.match(text)
-    return bool(match and (not match[2] or _UNIT.fullmatch(match[2])))
+    match = _QUANTITY.fullmatch(text.strip())
+    return bool(match and (not match[2] or (len(match[2]) <= _LONGEST and _UNIT.fullmatch(match[2]))))
 
 
 def split(text: str) -> tuple[float, str]:
     """Return the finite number and the unit ("" if none) of a text such as "0.0116 rad"."""
-    match = _QUANTITY.match(text)
+    match = _QUANTITY.fullmatch(text.strip())
     if match is None or not math.isfinite(float(match[1])):
         raise InputError(f"{text[:_LONGEST]!r} is not a number with a unit; write for example '0.3 kg'")
     return float(match[1]), match[2] or ""

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from flexarm_env.errors import InputError
-from flexarm_env.identify.recording import Recording
+from flexarm_env.recordings.recording import Recording
 
 HEADER = "time [s],current [A],arm_angle [rad]"
 

@@ -115,7 +115,7 @@ def recordings_of_the_demo(folder: Path) -> None:
 def recordings_of_the_bench(folder: Path) -> None:
     """Recordings of the arm of docs/your-arm.md with Coulomb friction, as its data logger writes them."""
     from flexarm_env.arm import Arm
-    from flexarm_env.identify.simulate import simulate
+    from flexarm_env.experiments.simulate import simulate
 
     document = PROJECT / "docs" / "your-arm.md"
     block = next(block for block in blocks_of(document) if block.file == "bench.toml")

@@ -24,19 +24,25 @@ HEAVY = {"torch", "stable_baselines3", "sb3_contrib", "plotly", "matplotlib", "p
 LAYERS = (
     {"errors"},
     {"units", "parameters", "signals", "files", "display"},
-    {"arm", "arm_file", "plant", "effects", "sensors", "linear"},
+    {"arm", "arm_file", "plant", "effects", "sensors", "linear", "recordings"},
+    {"experiments"},
     {"identify", "controllers", "tasks", "render", "env"},
     {"vector_env", "sb3", "pictures", "registration"},
-    {"lab", "cli", "demo", "thesis", "__main__"},
+    {"terminal"},
+    {"lab", "demo", "thesis"},
+    {"cli", "__main__"},
     {"agents", "benchmarks"},
 )
 RANK = {name: rank for rank, layer in enumerate(LAYERS) for name in layer}
 # From here on modules are users of the package and may take names from flexarm_env itself.
-USERS = RANK["cli"]
-# Beyond the layers: identify never sees the env, and controllers see observations only (and the arm that they believe in).
+USERS = RANK["terminal"]
+# Beyond the layers: recordings know no arm, identify never sees the env, and controllers see observations only (and the arm
+# that they believe in).
 NEVER = {
+    "recordings": {"arm", "arm_file", "plant", "effects", "linear"},
+    "experiments": {"env", "tasks", "render"},
     "identify": {"env", "tasks", "render"},
-    "controllers": {"plant", "effects", "sensors", "identify", "tasks", "render", "env"},
+    "controllers": {"plant", "effects", "sensors", "recordings", "experiments", "identify", "tasks", "render", "env"},
 }
 ONLY_IN = {
     "gymnasium": {"tasks", "render", "env"}.union(*LAYERS[RANK["env"] + 1 :]),
@@ -107,12 +113,18 @@ def test_dependencies_point_one_way():
         ("flexarm_env/identify/fit.py", "from .. import env"),
         ("flexarm_env/identify/deep/fit.py", "from ...env import SlewEnv"),
         ("flexarm_env/identify/fit.py", "import flexarm_env.vector_env"),
+        ("flexarm_env/recordings/formats/text.py", "from flexarm_env.arm import Arm"),
+        ("flexarm_env/recordings/recording.py", "from flexarm_env.identify.fit import fit"),
+        ("flexarm_env/experiments/simulate.py", "from flexarm_env.identify.fit import fit"),
         ("flexarm_env/plant/beam.py", "def f():\n    import gymnasium.spaces"),
         ("flexarm_env/plant/beam.py", "from flexarm_env import Arm"),
         ("flexarm_env/parameters.py", "from .plant.beam import matrices"),
         ("flexarm_env/controllers/pd.py", "from flexarm_env.plant import assemble"),
         ("flexarm_env/env.py", "from agents.train import main"),
         ("flexarm_env/vector_env.py", "import torch"),
+        ("flexarm_env/lab/session.py", "from flexarm_env.cli import arguments"),
+        ("flexarm_env/demo/story.py", "def f():\n    from flexarm_env import cli"),
+        ("flexarm_env/terminal/report.py", "from flexarm_env.lab.job import Job"),
         ("flexarm_env/stray.py", "import math"),
     ],
 )

@@ -18,7 +18,7 @@ from agents.learning.episodes import EpisodeVecEnv
 from agents.learning.models import ON_POLICY, make_model
 from agents.learning.options import Plan
 from flexarm_env import Arm, InputError, __version__
-from flexarm_env.cli.outputs import commit
+from flexarm_env.terminal.provenance import commit
 
 #: Told the share done and one line about it.
 Report = Callable[[float, str], None]

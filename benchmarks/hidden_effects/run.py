@@ -14,8 +14,8 @@ import flexarm_env
 from benchmarks.hidden_effects.cases import Case
 from benchmarks.hidden_effects.machine import record
 from flexarm_env import Arm, Recording, diagnose
-from flexarm_env.cli.outputs import commit
 from flexarm_env.files import write_whole
+from flexarm_env.terminal.provenance import commit
 
 Method = Callable[[Arm, Sequence[Recording]], dict[str, Any]]
 ARM = "thesis-fem"

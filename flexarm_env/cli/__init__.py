@@ -32,8 +32,9 @@ def run(arguments: Sequence[str]) -> int:
     except InputError as error:
         return complain(str(error))
     except BrokenPipeError:
-        # Whoever read the output has had enough; Python would complain once more while it shuts down.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        from flexarm_env.terminal.outputs import discard_stdout
+
+        discard_stdout()
         return DONE
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""

@@ -45,15 +45,17 @@ def compare(
     json: Json = None,
 ) -> None:
     """Replay recordings through an arm: error per signal, regime and frequency band, against the noise."""
-    arguments.check(json, report, read=arguments.read_by(recordings, columns, arm), specs=effects, pictures=report is not None)
-    model, runs = arguments.load(recordings, arm, columns, effects)
-    from flexarm_env.cli import outputs, tables, work
+    given = arguments.Given(recordings, arm, columns, effects)
+    model, runs = given.load(json, report)
+    from flexarm_env.cli.answers import hand_out
+    from flexarm_env.terminal import identification, plain_data, tables
+    from flexarm_env.terminal.provenance import provenance
 
-    result = work.compare(model, runs)
-    work.finish("compare", arm, runs, None, json, work.comparison_json(result), tables.comparison(result))
+    result = identification.compare(model, runs)
+    hand_out("compare", arm, runs, None, json, plain_data.of_comparison(result), tables.comparison(result))
     if report is not None:
-        line = arguments.command_line("compare", recordings, arm, columns, effects)
-        work.report(report, runs, result, None, line | outputs.provenance("compare", arm, runs, None))
+        made = given.command_line("compare") | provenance("compare", arm, runs, None)
+        identification.write_page(report, runs, result, None, made)
 
 
 @app.command()
@@ -72,21 +74,22 @@ def diagnose(
     json: Json = None,
 ) -> None:
     """Tell whether constants are wrong or an effect is missing, which one, how sure, and what would settle it."""
-    read = arguments.read_by(recordings, columns, arm, save)
-    arguments.check(json, report, save, next_run, read=read, specs=effects, pictures=report is not None)
-    model, runs = arguments.load(recordings, arm, columns, effects)
-    from flexarm_env.cli import outputs, tables, work
+    given = arguments.Given(recordings, arm, columns, effects)
+    model, runs = given.load(json, report, save, next_run)
+    from flexarm_env.cli.answers import hand_out
     from flexarm_env.files import write_whole
+    from flexarm_env.terminal import identification, tables
+    from flexarm_env.terminal.provenance import provenance
 
-    result = work.diagnose(model, runs, seed, jobs)
-    work.finish("diagnose", arm, runs, seed, json, result.as_json(), tables.diagnosis(result))
-    arguments.save_arm(result.arm, save)
+    result = identification.diagnose(model, runs, seed, jobs)
     if next_run is not None and result.next_run is not None:
         write_whole(next_run, result.next_run.as_csv())
+    hand_out("diagnose", arm, runs, seed, json, result.as_json(), tables.diagnosis(result))
+    if save is not None:
+        result.arm.save(save)
     if report is not None:
-        line = arguments.command_line("diagnose", recordings, arm, columns, effects, seed)
-        made = line | outputs.provenance("diagnose", arm, runs, seed)
-        work.report(report, runs, work.compare(result.nominal, runs), result, made)
+        made = given.command_line("diagnose", seed) | provenance("diagnose", arm, runs, seed)
+        identification.write_page(report, runs, identification.compare(result.nominal, runs), result, made)
     if result.verdict in ("unknown", "insufficient_data"):
         raise typer.Exit(1)
 
@@ -104,14 +107,16 @@ def add(
 ) -> None:
     """Add one effect to an arm and refit: error before, refitted, after. Exit code 1 if it does not fall."""
     own = [effect] if ".py:" in effect else []
-    specs = [*(effects or []), *own]
-    arguments.check(json, save, read=arguments.read_by(recordings, columns, arm, save), specs=specs)
-    model, runs = arguments.load(recordings, arm, columns, specs)
-    from flexarm_env.cli import tables, work
+    model, runs = arguments.Given(recordings, arm, columns, [*(effects or []), *own]).load(json, save=save)
+    from flexarm_env.cli.answers import hand_out
+    from flexarm_env.effects.catalogue import load_effect
+    from flexarm_env.terminal import identification, plain_data, tables
 
-    result = work.add(work.own_name(effect) if own else effect, model, runs, seed)
-    work.finish("add", arm, runs, seed, json, work.addition_json(result), tables.addition(result))
-    arguments.save_arm(result.arm, save, hint=True)
+    result = identification.add(load_effect(effect).name if own else effect, model, runs, seed)
+    hand_out("add", arm, runs, seed, json, plain_data.of_addition(result), tables.addition(result))
+    if save is not None:
+        result.arm.save(save)
+    arguments.hint_at_save(save)
     if not result.error["final"] < result.error["refitted"]:
         raise typer.Exit(1)
 
@@ -127,13 +132,15 @@ def fit(
     json: Json = None,
 ) -> None:
     """Refit the constants of an arm, and add nothing."""
-    arguments.check(json, save, read=arguments.read_by(recordings, columns, arm, save), specs=effects)
-    model, runs = arguments.load(recordings, arm, columns, effects)
-    from flexarm_env.cli import tables, work
+    model, runs = arguments.Given(recordings, arm, columns, effects).load(json, save=save)
+    from flexarm_env.cli.answers import hand_out
+    from flexarm_env.terminal import identification, plain_data, tables
 
-    result = work.fit(model, runs, seed)
-    work.finish("fit", arm, runs, seed, json, work.fit_json(result), tables.fit(result))
-    arguments.save_arm(result.arm, save, hint=True)
+    result = identification.fit(model, runs, seed)
+    hand_out("fit", arm, runs, seed, json, plain_data.of_fit(result), tables.fit(result))
+    if save is not None:
+        result.arm.save(save)
+    arguments.hint_at_save(save)
 
 
 @app.command()
@@ -152,11 +159,12 @@ def simulate(
     json: Json = None,
 ) -> None:
     """Make a recording with an arm's model."""
-    arguments.check(json, save, read=arguments.read_by([Path(input)] if input else [], columns, arm), specs=effects)
-    from flexarm_env.cli import work
+    given = arguments.Given([Path(input)] if input else [], arm, columns, effects)
+    arguments.check(json, save, read=given.files(), specs=effects)
+    from flexarm_env.cli import simulation
 
     model = arguments.load_arm(arm, effects)
-    work.simulate(model, arm, input, (duration, rate, seed, noise), columns, save, json)
+    simulation.simulate(model, arm, input, (duration, rate, seed, noise), columns, save, json)
 
 
 @app.command()
@@ -209,10 +217,10 @@ def lab(
     show: Annotated[bool, typer.Option("--show/--no-show", help="Open a browser.")] = True,
 ) -> None:
     """Do the same in a browser: drop recordings in, play with effects, diagnose, add. Serves this machine only."""
-    from flexarm_env.cli import outputs
+    from flexarm_env.terminal import outputs
 
     outputs.need_lab()
-    model, runs = arguments.load(recordings, arm, columns, effects) if recordings else (arguments.load_arm(arm, effects), [])
+    model, runs = arguments.Given(recordings or [], arm, columns, effects).read()
     from flexarm_env.lab.server import serve
 
     serve(model, runs, columns, port, show)
@@ -221,6 +229,6 @@ def lab(
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
 def bench(context: typer.Context) -> None:
     """Measure speed and accuracy (in a source tree)."""
-    from flexarm_env.cli import work
+    from flexarm_env.cli import benchmarks
 
-    raise typer.Exit(work.bench(context.args))
+    raise typer.Exit(benchmarks.run(context.args))

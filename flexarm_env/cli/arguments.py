@@ -1,7 +1,9 @@
-"""What the commands make of the arguments that they share; what is slow to import is imported when it is needed."""
+"""The arguments that commands share, checked and turned into an arm and its recordings. Slow imports wait until needed."""
 
 from __future__ import annotations
 
+import shlex
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from flexarm_env.arm import Arm
-    from flexarm_env.identify.recording import Recording
+    from flexarm_env.recordings.recording import Recording
 
 
 def check(
@@ -22,7 +24,7 @@ def check(
     pictures: bool = False,
 ) -> None:
     """Refuse places that cannot be written or that are read, and pictures without their packages."""
-    from flexarm_env.cli import outputs
+    from flexarm_env.terminal import outputs
 
     files = [Path(spec.rpartition(":")[0]) for spec in specs or () if ":" in spec]
     outputs.check_places(json, *places, read=[*read, *files])
@@ -30,49 +32,78 @@ def check(
         outputs.need_plots()
 
 
-def read_by(recordings: Sequence[Path], columns: Path | None, arm: str, save: Path | None = None) -> list[Path]:
-    """Return what a command reads and must not write; the arm's own file may be saved anew."""
-    found = [*recordings, *([columns] if columns is not None else [])]
-    return [*found, Path(arm)] if Path(arm).is_file() and save != Path(arm) else found
+@dataclass(frozen=True)
+class Given:
+    """The arm and the recordings that a command names.
 
+    Attributes:
+        recordings: files and folders.
+        arm: a file, or the name of a shipped arm.
+        columns: a file with a column map.
+        effects: effects of the user's own, as "FILE.py:Name".
+    """
 
-def command_line(
-    name: str,
-    recordings: Sequence[Path],
-    arm: str,
-    columns: Path | None,
-    specs: Sequence[str] | None,
-    seed: int | None = None,
-) -> dict[str, str]:
-    """Return the command line that does this again, for the report."""
-    import shlex
+    recordings: Sequence[Path]
+    arm: str
+    columns: Path | None
+    effects: Sequence[str] | None
 
-    words = ["flexarm", name, *map(str, recordings), "--arm", arm]
-    words += ["--columns", str(columns)] if columns is not None else []
-    words += [word for spec in specs or () for word in ("--effects", spec)]
-    words += ["--seed", str(seed)] if seed is not None else []
-    return {"command_line": shlex.join(words)}
+    def files(self, save: Path | None = None) -> list[Path]:
+        """List the files that are read and must not be written; the arm's own file may be saved anew."""
+        found = [*self.recordings, *([self.columns] if self.columns is not None else [])]
+        return [*found, Path(self.arm)] if Path(self.arm).is_file() and save != Path(self.arm) else found
+
+    def load(
+        self, json: Path | None, report: Path | None = None, save: Path | None = None, other: Path | None = None
+    ) -> tuple[Arm, list[Recording]]:
+        """Check where the command writes, then read the arm and its recordings.
+
+        Args:
+            json: for the JSON.
+            report: for the page.
+            save: for the arm.
+            other: for another file.
+
+        Raises:
+            InputError: for a place that cannot be written, and for an arm or recordings that cannot be read.
+        """
+        check(json, report, save, other, read=self.files(save), specs=self.effects, pictures=report is not None)
+        return self.read()
+
+    def read(self) -> tuple[Arm, list[Recording]]:
+        """Read the arm and its recordings, of which there may be none."""
+        from flexarm_env.terminal import inputs
+
+        arm = load_arm(self.arm, self.effects)
+        recordings = inputs.read_recordings(arm, self.recordings, self.columns) if self.recordings else []
+        show_notes(recordings)
+        return arm, recordings
+
+    def command_line(self, name: str, seed: int | None = None) -> dict[str, str]:
+        """Write the command line that does this again, for the report."""
+        words = ["flexarm", name, *map(str, self.recordings), "--arm", self.arm]
+        words += ["--columns", str(self.columns)] if self.columns is not None else []
+        words += [word for spec in self.effects or () for word in ("--effects", spec)]
+        words += ["--seed", str(seed)] if seed is not None else []
+        return {"command_line": shlex.join(words)}
 
 
 def load_arm(name: str, specs: Sequence[str] | None) -> Arm:
-    """Return an arm that may have effects of the user's own."""
+    """Load an arm that may have effects of the user's own."""
     from flexarm_env.arm import Arm
-    from flexarm_env.cli import inputs
+    from flexarm_env.terminal import inputs
 
     return Arm.load(name, inputs.known_effects(specs or []))
 
 
-def load(paths: list[Path], name: str, columns: Path | None, specs: Sequence[str] | None) -> tuple[Arm, list[Recording]]:
-    """Return an arm, and recordings of it."""
-    from flexarm_env.cli import inputs
+def show_notes(recordings: Sequence[Recording]) -> None:
+    """Print on stderr how files were read, where a person might expect otherwise."""
+    for recording in recordings:
+        for note in recording.notes:
+            typer.echo(f"Note: {recording.source}: {note}", err=True)
 
-    arm = load_arm(name, specs)
-    return arm, inputs.read_recordings(arm, paths, columns)
 
-
-def save_arm(arm: Arm, path: Path | None, hint: bool = False) -> None:
-    """Save an arm, or say how to if asked for a hint."""
-    if path is not None:
-        arm.save(path)
-    elif hint:
+def hint_at_save(save: Path | None) -> None:
+    """Say how the arm is kept, where it was not saved."""
+    if save is None:
         typer.echo("Not saved; --save ARM.toml keeps the arm.", err=True)

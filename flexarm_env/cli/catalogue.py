@@ -9,10 +9,10 @@ from typing import Any
 from rich.console import RenderableType
 from rich.text import Text
 
-from flexarm_env.cli import outputs, tables
 from flexarm_env.effects import Catalogue, Effect, catalogue
 from flexarm_env.effects.catalogue import LAW_PORTS, load_effect
 from flexarm_env.pictures import words
+from flexarm_env.terminal import outputs, tables
 
 _FIELDS = ("equation", "looks_like", "confused_with", "source", "needs")
 

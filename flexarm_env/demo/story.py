@@ -9,11 +9,11 @@ from rich.console import Console
 from rich.text import Text
 
 from flexarm_env.arm import Arm
-from flexarm_env.cli import outputs, tables, work
-from flexarm_env.errors import InputError
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.results import Addition, Comparison, Diagnosis
 from flexarm_env.pictures import words
+from flexarm_env.recordings.recording import Recording
+from flexarm_env.terminal import identification, outputs, plain_data, tables
+from flexarm_env.terminal.provenance import provenance
 
 ARM = "thesis-fem"
 JOBS = 2
@@ -32,42 +32,34 @@ def tell(output: Path, seed: int = 0, json: Path | None = None) -> bool:
     Raises:
         InputError: if the folder cannot be made or written.
     """
-    _make(output)
+    outputs.make_folder(output, "demo.json")
     out = tables.console(to_stderr=json == outputs.STDOUT)
     arm = Arm.load(ARM)
     recordings = Recording.read_all(Path(__file__).parent)
-    before = work.compare(arm, recordings)
+    before = identification.compare(arm, recordings)
     _heading(out, f"flexarm compare RECORDINGS --arm {ARM}", words.comparison(before))
-    diagnosis = work.diagnose(arm, recordings, seed, JOBS)
+    diagnosis = identification.diagnose(arm, recordings, seed, JOBS)
     _heading(out, f"flexarm diagnose RECORDINGS --arm {ARM}", words.verdict(diagnosis))
-    content: dict[str, Any] = {"compare": work.comparison_json(before), "diagnose": diagnosis.as_json()}
-    added, after = None, work.compare(diagnosis.arm, recordings)
+    content: dict[str, Any] = {"compare": plain_data.of_comparison(before), "diagnose": diagnosis.as_json()}
+    added, after = None, identification.compare(diagnosis.arm, recordings)
     if diagnosis.verdict == "effects":
-        added = work.add(diagnosis.effects[0], arm, recordings, seed)
-        after = work.compare(added.arm, recordings)
+        added = identification.add(diagnosis.effects[0], arm, recordings, seed)
+        after = identification.compare(added.arm, recordings)
         _heading(out, f"flexarm add {added.effect} RECORDINGS --arm {ARM}", words.addition(added))
         tables.show(out, tables.steps(*_steps(added)))
         _heading(out, "flexarm compare RECORDINGS --arm THE-NEW-ARM", words.comparison(after))
-        content |= {"add": work.addition_json(added), "compare_after": work.comparison_json(after)}
+        content |= {"add": plain_data.of_addition(added), "compare_after": plain_data.of_comparison(after)}
     out.print(Text(_resolve(added)))
-    provenance = outputs.provenance("demo", ARM, recordings, seed)
+    origin = provenance("demo", ARM, recordings, seed)
     page = output / "report.html"
     command = {"command_line": f"flexarm diagnose flexarm_env/demo --arm {ARM} --seed {seed}"}
-    work.report(page, recordings, before, diagnosis, provenance | command)
+    identification.write_page(page, recordings, before, diagnosis, origin | command)
     made = [*_draw(output, before, after, diagnosis), page]
-    content |= provenance
+    content |= origin
     outputs.write_json(output / "demo.json", content)
     outputs.write_json(json, content)
     out.print(Text(f"In {output}: {', '.join(path.name for path in [*made, output / 'demo.json'])}"))
     return added is not None and added.error["final"] < added.error["refitted"]
-
-
-def _make(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot make folder {folder}: {error.strerror}; name another with --output") from None
-    outputs.check_places(None, folder / "demo.json")
 
 
 def _heading(out: Console, command: str, sentence: str) -> None:

@@ -6,16 +6,16 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from flexarm_env.arm import Arm, short_name
+from flexarm_env.experiments.next_run import propose
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.calibrate.intervals import estimates
 from flexarm_env.identify.explain.detection_limits import detection_limits
-from flexarm_env.identify.next_run import propose
 from flexarm_env.identify.origin import with_origin
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.replay.error_measure import Score
 from flexarm_env.identify.results import Candidate, Diagnosis
 from flexarm_env.identify.select.trace import Trace
+from flexarm_env.recordings.recording import Recording
 
 
 def conclude(

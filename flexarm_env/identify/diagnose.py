@@ -11,7 +11,6 @@ from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.conclude import conclude, insufficient, with_outlook
 from flexarm_env.identify.fit import calibrate_constants
 from flexarm_env.identify.progress import Progress, Report
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.error_measure import error_measure
 from flexarm_env.identify.replay.hold_out import hold_out_notes
@@ -22,6 +21,7 @@ from flexarm_env.identify.select.model import judge
 from flexarm_env.identify.select.search import Search
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.identify.workers import Workers
+from flexarm_env.recordings.recording import Recording
 
 
 def diagnose(

@@ -14,7 +14,6 @@ from flexarm_env.identify.calibrate.intervals import estimates
 from flexarm_env.identify.calibrate.parameters import free_parameters
 from flexarm_env.identify.origin import with_origin
 from flexarm_env.identify.progress import Progress, Report
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.hold_out import hold_out_late
 from flexarm_env.identify.results import Addition, Fit
@@ -22,6 +21,7 @@ from flexarm_env.identify.select.screen import attempt
 from flexarm_env.identify.select.signatures import baselines, signatures
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.identify.workers import Workers
+from flexarm_env.recordings.recording import Recording
 
 
 def fit(

@@ -9,7 +9,7 @@ from typing import Any
 from flexarm_env import __version__
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.estimate import Estimate
-from flexarm_env.identify.recording import Recording
+from flexarm_env.recordings.recording import Recording
 
 
 def with_origin(

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.display import Shown
+from flexarm_env.experiments.next_run import NextRun
 from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.explain.detection_limits import DetectionLimit
-from flexarm_env.identify.next_run import NextRun
 from flexarm_env.identify.settings import SETTINGS, Settings
 
 Floats = NDArray[np.float64]

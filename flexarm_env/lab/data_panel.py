@@ -10,10 +10,11 @@ from nicegui import events, html, run, ui
 from flexarm_env.arm import Arm
 from flexarm_env.arm_file import shipped_arms
 from flexarm_env.errors import InputError
-from flexarm_env.identify.recording import Recording
 from flexarm_env.lab.guard import LARGEST_BODY
 from flexarm_env.lab.session import Session
 from flexarm_env.lab.uploads import MOST_RECORDINGS
+from flexarm_env.recordings.formats.catalogue import suffixes
+from flexarm_env.recordings.recording import Recording
 
 DEMO_ARM = "thesis-fem"
 ENVELOPE = 2**16  # [bytes], of what a request has beside the files
@@ -119,7 +120,7 @@ def _drop_zone(upload: ui.upload) -> None:
     take = f"getElement({upload.id}).$refs.qRef.addFiles"
     with html.label().classes("drop") as zone:
         html.span("Drop CSV files here, or choose some")
-        chosen = ui.element("input").props("type=file multiple accept=.csv,.txt,.dat,.mat")
+        chosen = ui.element("input").props(f"type=file multiple accept={','.join(suffixes())}")
     chosen.on("change", js_handler=f"(e) => {{ {take}([...e.target.files]); e.target.value = '' }}")
     mark = "e.currentTarget.classList"
     zone.on("dragover", js_handler=f"(e) => {{ e.preventDefault(); {mark}.add('over') }}")

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.recording import Recording
+from flexarm_env.experiments.payload import with_payload
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.error_measure import Score, score
-from flexarm_env.identify.replay.payload import with_payload
 from flexarm_env.identify.replay.replay import replay
 from flexarm_env.identify.replay.run import Run
+from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
 

@@ -7,13 +7,13 @@ from collections.abc import Callable
 from nicegui import html, ui
 
 from flexarm_env.errors import InputError
-from flexarm_env.identify.recording import Recording
 from flexarm_env.lab.data_panel import DataPanel
 from flexarm_env.lab.effects_panel import EffectsPanel
 from flexarm_env.lab.results_panel import ResultsPanel
 from flexarm_env.lab.session import Session
 from flexarm_env.lab.style import CSS, PRIMARY
 from flexarm_env.lab.view_panel import ViewPanel
+from flexarm_env.recordings.recording import Recording
 
 #: How often [s] the page looks what is new.
 BEAT = 0.04

@@ -15,11 +15,11 @@ from nicegui import app, background_tasks, run, ui
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
-from flexarm_env.identify.recording import Recording
 from flexarm_env.lab.guard import Guard
 from flexarm_env.lab.live import Live
 from flexarm_env.lab.page import LabPage
 from flexarm_env.lab.session import Session
+from flexarm_env.recordings.recording import Recording
 
 HOST = "127.0.0.1"
 #: Tabs whose state is kept; the one that was opened first goes first.

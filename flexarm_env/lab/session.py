@@ -11,15 +11,15 @@ from typing import Any
 import flexarm_env
 from flexarm_env.arm import Arm
 from flexarm_env.arm_file import arm_text
-from flexarm_env.cli import outputs
-from flexarm_env.cli.report import report
 from flexarm_env.errors import InputError
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.results import Addition, Diagnosis
 from flexarm_env.lab.job import DONE, Job, Progress
 from flexarm_env.lab.live import Live
 from flexarm_env.lab.uploads import read_upload
+from flexarm_env.recordings.recording import Recording
+from flexarm_env.terminal.provenance import provenance
+from flexarm_env.terminal.report import report
 
 SEED, JOBS = 0, 2
 AS_GIVEN, REFITTED, BY_HAND = "as given", "constants refitted", "by hand"
@@ -62,13 +62,14 @@ class Session:
         return self.job is not None and self.job.state == "running"
 
     def upload(self, files: Sequence[tuple[str, bytes]]) -> list[str]:
-        """Take in uploaded files, by name and content; return a line for each that is not taken."""
+        """Take in uploaded files, by name and content; return a line for each that is not taken or that is to be noted."""
         taken, lines = list(self.recordings), []
         for name, content in files:
             try:
                 found = read_upload(self.base, name, content, self.columns, taken)
                 prepare(self.base, [*taken, found])
                 taken.append(found)
+                lines += [f"{found.source}: {note}" for note in found.notes]
             except InputError as error:
                 lines.append(str(error))
         if len(taken) > len(self.recordings):
@@ -188,7 +189,7 @@ class Session:
         line = ["flexarm", verb, *(one.source or one.name for one in recordings), "--arm", nominal.name]
         seed = None if diagnosis is None else SEED
         made: dict[str, Any] = {"command_line": shlex.join(line + ([] if seed is None else ["--seed", str(seed)]))}
-        made |= outputs.provenance("lab", nominal.name, recordings, seed)
+        made |= provenance("lab", nominal.name, recordings, seed)
 
         def work(say: Progress) -> str:
             say(0.05, "comparing")

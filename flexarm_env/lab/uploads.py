@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import tempfile
+from dataclasses import replace
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from flexarm_env.arm import Arm
-from flexarm_env.cli.inputs import read_recordings
 from flexarm_env.errors import InputError
-from flexarm_env.identify.recording import Recording
 from flexarm_env.lab.guard import LARGEST_BODY
+from flexarm_env.recordings.recording import Recording
+from flexarm_env.terminal.inputs import read_recordings
 
 MOST_RECORDINGS = 12
 #: Samples of all recordings together: beyond it nothing is live any more.
@@ -38,10 +39,9 @@ def read_upload(arm: Arm, name: str, content: bytes, columns: Path | None, prese
         path = Path(folder) / file
         path.write_bytes(content)
         try:
-            (found,) = read_recordings(arm, [path], columns)
+            found = replace(*read_recordings(arm, [path], columns), source=file)
         except InputError as error:
             raise InputError(str(error).replace(f"{folder}/", "").replace(str(Path(folder) / ""), "")) from None
-    object.__setattr__(found, "source", file)
     if any(found.name == one.name for one in present):
         raise InputError(f"{file}: a recording '{found.name}' is here already; remove it or rename the file")
     if sum(map(len, present)) + len(found) > MOST_SAMPLES:

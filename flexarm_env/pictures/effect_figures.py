@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import plotly.graph_objects as go
 
+from flexarm_env.experiments.next_run import NextRun
 from flexarm_env.identify.explain.effect_curve import UNITS, EffectCurve
-from flexarm_env.identify.next_run import NextRun
 from flexarm_env.identify.results import Comparison
 from flexarm_env.pictures import words
 from flexarm_env.pictures.overlays import title

@@ -8,11 +8,11 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.recording import Recording
+from flexarm_env.experiments.simulate import simulate
 from flexarm_env.identify.results import Comparison, Diagnosis
-from flexarm_env.identify.simulate import simulate
 from flexarm_env.pictures import bars, overlays, words
 from flexarm_env.pictures.telling import most_telling, replay_of
+from flexarm_env.recordings.recording import Recording
 
 DURATION = 5.0
 

@@ -8,12 +8,12 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.results import Comparison, Replay
 from flexarm_env.pictures import words
 from flexarm_env.pictures.plots import STEPS_PER_NOISE, Floats, curve, finished, legend
 from flexarm_env.pictures.style import AFTER_LINE, BEFORE_LINE, INK, MEASURED_LINE
 from flexarm_env.pictures.telling import CLOSE, most_telling, replay_of
+from flexarm_env.recordings.recording import Recording
 
 AS_GIVEN, CORRECTED = "model as given", "corrected"
 

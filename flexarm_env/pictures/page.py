@@ -9,11 +9,11 @@ from typing import Any
 
 from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.explain.effect_curve import EffectCurve
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.results import Comparison, Diagnosis
 from flexarm_env.pictures import bars, effect_figures, overlays, residuals, words
 from flexarm_env.pictures.document import bullets, document, figure, folded, panels, paragraph, section, table
 from flexarm_env.pictures.telling import replay_of, worst_signals
+from flexarm_env.recordings.recording import Recording
 
 OVER_NOISE = "Held-out rms error over the noise; 1 (dotted) is perfect, hatched boxes are what a step removed."
 

@@ -11,11 +11,11 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 from scipy.signal import welch
 
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.results import Comparison, Replay
 from flexarm_env.pictures.overlays import AS_GIVEN, CORRECTED, band
 from flexarm_env.pictures.plots import Floats, digits, finished, in_steps, legend
 from flexarm_env.pictures.style import AFTER_LINE, BEFORE_LINE, INK, REGIMES
+from flexarm_env.recordings.recording import Recording
 
 POINTS = 1300  # of a scatter
 BINS = 24

@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from flexarm_env import __version__
-from flexarm_env.cli import outputs, tables
-from flexarm_env.cli.progress import Progress, progress
-from flexarm_env.errors import InputError
 from flexarm_env.files import write_whole
+from flexarm_env.terminal import outputs, tables
+from flexarm_env.terminal.progress import Progress, progress
+from flexarm_env.terminal.provenance import provenance
 from flexarm_env.thesis import arms
 from flexarm_env.thesis.claims import ROWS, Claim
 from flexarm_env.thesis.errata import Erratum, errata
@@ -39,12 +39,12 @@ def reproduce(output: Path, json: Path | None = None) -> None:
     Raises:
         InputError: if the folder cannot be made or written.
     """
-    _make(output)
+    outputs.make_folder(output, PAGE, NUMBERS)
     with progress("the thesis") as move:
         claims, found, sheets = _work(output, move)
     content: dict[str, Any] = {"claims": [claim.as_json() for claim in claims], "errata": [e.as_json() for e in found]}
     content |= {"figures": {s.number: {"title": s.title, "file": s.stem} for drawn in sheets.values() for s in drawn}}
-    content |= outputs.provenance("thesis", "thesis", [], None)
+    content |= provenance("thesis", "thesis", [], None)
     commit = content["commit"]
     made = f"FlexArm {__version__}" + (f", commit {commit}" if commit else "")
     write_whole(output / PAGE, page(claims, found, sheets, made))
@@ -113,14 +113,6 @@ def _draw(sheet: Sheet, output: Path) -> None:
     from flexarm_env.thesis import draw
 
     draw.save(draw.draw(sheet), output / sheet.stem)
-
-
-def _make(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot make folder {folder}: {error.strerror}; name another with --output") from None
-    outputs.check_places(None, folder / PAGE, folder / NUMBERS)
 
 
 def _say(output: Path, claims: Sequence[Claim], found: Sequence[Erratum], json: Path | None) -> None:

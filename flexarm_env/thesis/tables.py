@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.recording import Recording
+from flexarm_env.recordings.recording import Recording
 from flexarm_env.thesis import arms
 from flexarm_env.thesis.appendix import back_emf
 from flexarm_env.thesis.constants import EXPERIMENT_2, EXPERIMENT_3, RESISTANCE, TABLE

@@ -10,8 +10,8 @@ from cli_stand_ins import GAP, KPHI, Call, fake_compare, fake_diagnosis
 
 import flexarm_env
 from flexarm_env.arm import Arm
+from flexarm_env.experiments.simulate import simulate
 from flexarm_env.identify.results import Addition, Fit
-from flexarm_env.identify.simulate import simulate
 
 
 @pytest.fixture

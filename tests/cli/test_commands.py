@@ -10,8 +10,8 @@ from cli_stand_ins import GOOD_ARM, HEADER, OWN, ROWS
 import flexarm_env
 from flexarm_env.arm import Arm
 from flexarm_env.effects import catalogue
-from flexarm_env.identify.recording import Recording
-from flexarm_env.identify.simulate import simulate
+from flexarm_env.experiments.simulate import simulate
+from flexarm_env.recordings.recording import Recording
 
 
 def test_compare_shows_tables_and_exits_0(flexarm, identify, runs):
@@ -154,7 +154,7 @@ def test_effects_shows_the_catalogue_and_each_page(flexarm):
 
 
 def test_bench_says_where_it_is(flexarm, monkeypatch):
-    from flexarm_env.cli import work
+    from flexarm_env.cli import benchmarks
 
-    monkeypatch.setattr(work, "__file__", "/nowhere/flexarm_env/cli/work.py")
+    monkeypatch.setattr(benchmarks, "__file__", "/nowhere/flexarm_env/cli/benchmarks.py")
     assert "source tree" in flexarm.refused("bench")

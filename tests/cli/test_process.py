@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from cli_stand_ins import GOOD_ARM
+
 import flexarm_env
 
 
@@ -36,9 +38,32 @@ def test_the_command_s_exit_codes_reach_the_shell():
     assert plain.returncode == 0, plain.stderr
 
 
+def test_the_module_runs_as_the_command():
+    run = subprocess.run([sys.executable, "-m", "flexarm_env.cli", "--version"], capture_output=True, text=True, check=False)
+    assert (run.returncode, run.stdout) == (0, process("--version").stdout)
+
+
 def test_a_reader_that_leaves_early_is_no_error():
     program = "from flexarm_env.cli import main; main()"
     command = f"{sys.executable} -c '{program}' effects | head -1"
     environment = os.environ | {"PYTHONPATH": str(Path(flexarm_env.__file__).parents[1])}
     run = subprocess.run(command, shell=True, capture_output=True, text=True, env=environment, check=False)
     assert run.stderr == ""
+
+
+def test_a_reader_that_leaves_early_loses_no_file(tmp_path):
+    arm = tmp_path / "m.toml"
+    arm.write_text(GOOD_ARM)
+    made = tmp_path / "made.csv"
+    assert process("simulate", "--arm", arm, "--duration", "2", "--rate", "100", "--save", made).returncode == 0
+    reader, writer = os.pipe()
+    os.close(reader)
+    program = "from flexarm_env.cli import main; main()"
+    files = ["--save", tmp_path / "x.toml", "--json", tmp_path / "x.json"]
+    command = [sys.executable, "-c", program, *map(str, ["fit", made, "--arm", arm, *files])]
+    environment = os.environ | {"PYTHONPATH": str(Path(flexarm_env.__file__).parents[1])}
+    run = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, text=True, env=environment, check=False)
+    os.close(writer)
+    assert run.returncode == 0, run.stderr
+    assert (tmp_path / "x.toml").is_file()
+    assert (tmp_path / "x.json").is_file()

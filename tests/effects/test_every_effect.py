@@ -23,7 +23,7 @@ from flexarm_env.effects import Effect, catalogue
 from flexarm_env.effects.base import PORT_ARGUMENTS
 from flexarm_env.effects.catalogue import LAW_PORTS, load_effect
 from flexarm_env.errors import InputError
-from flexarm_env.identify.simulate import simulate
+from flexarm_env.experiments.simulate import simulate
 from flexarm_env.plant.compose import compose
 from flexarm_env.signals import INPUTS, SIGNALS
 from flexarm_env.units import factor

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flexarm_env import Arm, Recording, compare, simulate
-from flexarm_env.cli import tables, work
+from flexarm_env.terminal import plain_data, tables
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,7 @@ def test_one_recording_is_not_pooled_with_itself(arm, runs):
 def test_the_pooled_rows_are_shown_and_written(arm, runs):
     result = compare(arm, runs)
     pooled = next(row for row in result.rows if (row.recording, row.signal, row.part) == ("all", "arm_angle", "all"))
-    assert vars(pooled) in work.comparison_json(result)["rows"]
+    assert vars(pooled) in plain_data.of_comparison(result)["rows"]
     by_recording = tables.comparison(result)[3]
     columns = [[str(cell) for cell in column.cells] for column in by_recording.columns]
     assert columns[0] == ["pulse", "square", "all"]

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from flexarm_env import Arm, Recording, fit, simulate
+from flexarm_env.experiments.next_run import propose
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.explain.detection_limits import DetectionLimit, detection_limits
-from flexarm_env.identify.next_run import propose
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.settings import SETTINGS
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from flexarm_env import Arm
+from flexarm_env.experiments.simulate import simulate
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.progress import Progress
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.error_measure import Score, error_measure, score
 from flexarm_env.identify.select import fits
@@ -22,7 +22,7 @@ from flexarm_env.identify.select.search import Search, exchange
 from flexarm_env.identify.select.starts import rivals_of
 from flexarm_env.identify.select.swap import Comparison
 from flexarm_env.identify.select.trace import Accepted, Trace, Tried
-from flexarm_env.identify.simulate import simulate
+from flexarm_env.recordings.recording import Recording
 
 TRUE = {
     "asymmetric_coulomb": {"torque": 0.05},

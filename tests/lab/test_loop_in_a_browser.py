@@ -27,7 +27,7 @@ from browser import DESKTOP, PHONE, grave_faults, needs_chromium, opened, width_
 from scipy.signal import cont2discrete
 
 import flexarm_env
-from flexarm_env.identify.recording import Recording
+from flexarm_env.recordings.recording import Recording
 
 PROJECT = Path(flexarm_env.__file__).parents[1]
 DEMO = Path(flexarm_env.__file__).parent / "demo"

@@ -12,7 +12,7 @@ import pytest
 from picture_results import diagnosis
 
 from flexarm_env import Arm, InputError, Recording, simulate
-from flexarm_env.identify.next_run import NextRun
+from flexarm_env.experiments.next_run import NextRun
 from flexarm_env.identify.results import Addition, Diagnosis
 from flexarm_env.lab.job import Job
 from flexarm_env.lab.session import Session

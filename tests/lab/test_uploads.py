@@ -7,7 +7,7 @@ import pytest
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
-from flexarm_env.identify.simulate import simulate
+from flexarm_env.experiments.simulate import simulate
 from flexarm_env.lab import uploads
 from flexarm_env.lab.uploads import plain_name, read_upload
 

@@ -16,8 +16,8 @@ pytest.importorskip("plotly")
 from picture_results import SIGNALS, comparison, diagnosis, recordings
 from plotly.offline import get_plotlyjs
 
+from flexarm_env.experiments.next_run import NextRun
 from flexarm_env.identify.explain.detection_limits import DetectionLimit
-from flexarm_env.identify.next_run import NextRun
 from flexarm_env.pictures.page import Findings, page
 
 PLACE = re.compile(r'id="(figure-[^"]*)" style="[^"]*"><script type="text/plain">([^<]*)</script>')

@@ -10,11 +10,11 @@ import pytest
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.objective import Objective, Weights
 from flexarm_env.identify.calibrate.parameters import FitParameters
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.error_measure import score
 from flexarm_env.identify.replay.observer import innovation_sigma
 from flexarm_env.identify.replay.scales import torque_scale
+from flexarm_env.recordings.recording import Recording
 from tests.rig import SIGNALS, simulate
 
 #: Half the weight of the thesis's beam of 1 m [Nm], on a base tilted by 0.02 rad.

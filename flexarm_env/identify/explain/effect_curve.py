@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.explain.hub_torque import HubMotion, acts_on_hub, arguments, changes, hub_torque, law_torque
-from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.settings import SETTINGS, Explaining
+from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
 

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_are
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.recording import Recording
+from flexarm_env.experiments.payload import with_payload
 from flexarm_env.identify.replay.dataset import Dataset, prepare
-from flexarm_env.identify.replay.payload import with_payload
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.replay.scales import torque_scale
 from flexarm_env.identify.settings import SETTINGS, Explaining, Settings
 from flexarm_env.linear import INPUTS, LinearArm
+from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
 

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
-from flexarm_env.identify.recording import Recording
+from flexarm_env.experiments.payload import check_payload, plants_by_payload, stated_payload
 from flexarm_env.identify.replay.initial_state import Stretch, find_start
-from flexarm_env.identify.replay.payload import check_payload, plants_by_payload, stated_payload
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.replay.scales import scales_of
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.plant.plant import NO_INTERVALS, Plant
+from flexarm_env.recordings.recording import Recording
 from flexarm_env.signals import INPUTS
 
 Floats = NDArray[np.float64]

@@ -10,8 +10,8 @@ import pytest
 from recording_files import LOGGER, refusal, save
 
 from flexarm_env.errors import InputError
-from flexarm_env.identify.columns import load_columns
-from flexarm_env.identify.recording import Recording
+from flexarm_env.recordings.columns import load_columns
+from flexarm_env.recordings.recording import Recording
 
 
 def test_columns_from_toml(tmp_path: Path) -> None:

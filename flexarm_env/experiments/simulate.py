@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError, did_you_mean
-from flexarm_env.identify.recording import Recording
-from flexarm_env.identify.replay.payload import check_payload, stated_payload, with_payload
+from flexarm_env.experiments.payload import check_payload, stated_payload, with_payload
 from flexarm_env.plant import layout
+from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
 

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
-from flexarm_env.identify.recording import Recording
 from flexarm_env.plant.plant import Plant
+from flexarm_env.recordings.recording import Recording
 
 
 def stated_payload(recording: Recording) -> float:

@@ -20,7 +20,7 @@ CALIBRATED = tuple(name for name in (*SIGNALS, "reference") if UNITS[name] != "V
 
 _SETTINGS: dict[str, type] = {"delimiter": str, "header_prefix": str, "skip_rows": int, "decimal": str}
 _PLACES: dict[str, type] = {"column": str, "index": int, "variable": str}
-_NATIVE = re.compile(r"\s*(.*?)\s*\[\s*(.*?)\s*\]\s*")
+_NATIVE = re.compile(r"([^\[]*+)\[([^\]]*+)\]")
 
 
 @dataclass(frozen=True)
@@ -32,12 +32,14 @@ class Source:
         unit: unit of the numbers in the file.
         sign: 1 or -1.
         scale: a plain factor, or a quantity such as "1 rad/m".
+        key: of the entry that names the place: "column", "index" or "variable".
     """
 
     place: str | int
     unit: str
     sign: int = 1
     scale: str | float = 1.0
+    key: str = "index"
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,6 @@ class ColumnMap:
         header_prefix: the header is the last of the leading lines that start with it; "" if it has no mark.
         skip_rows: lines to drop at the top.
         decimal: "." or ",".
-        matlab: whether the places are MATLAB variables.
     """
 
     sources: dict[str, Source] = field(default_factory=dict)
@@ -58,7 +59,6 @@ class ColumnMap:
     header_prefix: str = ""
     skip_rows: int = 0
     decimal: str = "."
-    matlab: bool = False
 
 
 def check_names(names: Sequence[str], measured: bool = True) -> str:
@@ -91,16 +91,17 @@ def native_sources(header: Sequence[str]) -> dict[str, Source]:
     """
     sources: dict[str, Source] = {}
     for index, cell in enumerate(header):
-        match = _NATIVE.fullmatch(cell)
-        name = match[1] if match else re.split(r"[\s(\[]", cell.strip())[0]
+        match = _NATIVE.fullmatch(cell.strip())
+        name = match[1].strip() if match else re.split(r"[\s(\[]", cell.strip(), maxsplit=1)[0]
         where = f"column {index + 1} of the header"
         if name not in UNITS:
             raise InputError(f"{where}: unknown column {name[:60]!r}{did_you_mean(name, UNITS)}")
-        if match is None or not match[2]:
+        unit = match[2].strip() if match else ""
+        if not unit:
             raise InputError(f"{where}: '{name}' has no unit in brackets; write '{name} [{UNITS[name]}]'")
         if name in sources:
             raise InputError(f"{where}: '{name}' comes twice; keep one of the two")
-        sources[name] = Source(index, match[2])
+        sources[name] = Source(index, unit)
     return sources
 
 
@@ -178,22 +179,20 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
 
 def _column_map(table: Mapping[str, Any], measured: bool) -> ColumnMap:
     sources: dict[str, Source] = {}
-    kinds: set[str] = set()
     for key, value in table.items():
         if key in UNITS:
-            kind, sources[key] = _source(key, value)
-            kinds.add("variable" if kind == "variable" else "column or index")
+            sources[key] = _source(key, value)
         elif key not in _SETTINGS:
             raise InputError(f"[columns]: unknown key {key!r}{did_you_mean(str(key), (*UNITS, *_SETTINGS))}")
-    if len(kinds) > 1:
-        raise InputError("[columns]: some entries have 'variable' (.mat) and some 'column' or 'index' (text); keep to one")
+    if len({source.key == "variable" for source in sources.values()}) > 1:
+        raise InputError("[columns]: some entries have 'variable' and some 'column' or 'index'; keep to one kind")
     settings = {key: _typed(key, table[key], _SETTINGS[key]) for key in _SETTINGS if key in table}
     _check_settings(settings)
     try:
         check_names(tuple(sources), measured)
     except InputError as error:
         raise InputError(f"[columns] {error}") from None
-    return ColumnMap(sources, matlab=kinds == {"variable"}, **settings)
+    return ColumnMap(sources, **settings)
 
 
 def _check_settings(settings: Mapping[str, Any]) -> None:
@@ -208,8 +207,8 @@ def _check_settings(settings: Mapping[str, Any]) -> None:
         raise InputError("[columns]: skip_rows is negative; write the number of lines to drop")
 
 
-def _source(name: str, entry: Any) -> tuple[str, Source]:
-    """Return by what an entry finds its column ("column", "index" or "variable"), and the source."""
+def _source(name: str, entry: Any) -> Source:
+    """Check one entry of a `[columns]` table."""
     where = f"[columns] {name}"
     if not isinstance(entry, Mapping):
         raise InputError(f"{where}: is {entry!r}; write {{column = 'header text', unit = '{UNITS[name]}'}}")
@@ -232,7 +231,7 @@ def _source(name: str, entry: Any) -> tuple[str, Source]:
     number, _ = units.split(scale) if isinstance(scale, str) else (_typed(f"{name}: scale", scale, float), "")
     if not math.isfinite(number) or number == 0:
         raise InputError(f"{where}: scale is {scale!r}; write a number that is not zero")
-    return kinds[0], Source(place, unit, int(sign), scale)
+    return Source(place, unit, int(sign), scale, kinds[0])
 
 
 def _typed(key: str, value: Any, kind: type) -> Any:

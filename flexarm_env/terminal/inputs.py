@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from flexarm_env.arm import Arm
 from flexarm_env.effects import Catalogue, catalogue
 from flexarm_env.effects.catalogue import load_effect
 from flexarm_env.errors import InputError
-from flexarm_env.identify.columns import CALIBRATED
-from flexarm_env.identify.recording import Recording
-from flexarm_env.identify.recording_files import files_of
-
-_ENOUGH = 1 << 16
+from flexarm_env.recordings.arm_columns import layout_of
+from flexarm_env.recordings.columns import CALIBRATED, load_columns
+from flexarm_env.recordings.files import files_of
+from flexarm_env.recordings.recording import Recording, with_distinct_names
 
 
 def known_effects(specs: Sequence[str]) -> Catalogue:
@@ -23,42 +22,40 @@ def known_effects(specs: Sequence[str]) -> Catalogue:
 
 
 def read_recordings(arm: Arm, paths: Sequence[Path], columns: Path | None, measured: bool = True) -> list[Recording]:
-    """Return the recordings in files and folders, read by the arm's column map if there is no other.
+    """Read the recordings in files and folders by a column map, else by the arm's, else by their headers.
 
     Args:
         arm: that they are of.
         paths: files and folders.
-        columns: a column map of their own.
+        columns: a column map for all of them; without it the arm's is followed where `layout_of` says so.
         measured: whether they must hold a signal that the arm measures; commands alone are enough to be played.
 
     Raises:
         InputError: for a recording that cannot be read, or that does not fit the arm.
     """
-    layout: Any = columns
-    if columns is None and arm.columns and not all(map(_is_native, files_of(paths))):
-        layout = arm.columns
-    recordings = Recording.read_all(paths, layout, calibration(arm), measured)
+    if columns is not None or not arm.columns:
+        recordings = Recording.read_all(paths, columns, calibration(arm), measured)
+    else:
+        recordings = with_distinct_names([_read(arm, file, measured) for file in files_of(paths)])
     for recording in recordings:
         _check_fits(arm, recording, measured)
     return recordings
 
 
+def _read(arm: Arm, file: Path, measured: bool) -> Recording:
+    """Read one file by the arm's column map or by its header."""
+    try:
+        columns = load_columns(arm.columns or {}, measured)
+    except InputError as error:
+        raise InputError(f"arm '{arm.name}': {error}") from None
+    layout, note = layout_of(file, columns, measured)
+    recording = Recording.read(file, layout, calibration(arm), measured)
+    return replace(recording, notes=(*recording.notes, note)) if note else recording
+
+
 def calibration(arm: Arm) -> dict[str, float]:
     """Return the quantity per volt of each signal for which the arm file states one."""
     return {s: table["per_volt"] for s, table in arm.sensors.items() if table["per_volt"] != 0.0 and s in CALIBRATED}
-
-
-def _is_native(path: Path) -> bool:
-    """Tell whether a file has FlexArm's own header, in which case no column map is needed."""
-    if not path.is_file():  # a pipe would wait for ever
-        return False
-    try:
-        with path.open("rb") as file:
-            lines = file.read(_ENOUGH).decode("utf-8-sig", "replace").splitlines()
-    except OSError:
-        return False
-    header = next((line for line in lines if line.strip() and not line.startswith("#")), "")
-    return "time [" in header or "time[" in header
 
 
 def _check_fits(arm: Arm, recording: Recording, measured: bool) -> None:

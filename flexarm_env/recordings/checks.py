@@ -20,14 +20,18 @@ LONGEST_STEP, SHORTEST_STEP = 10_000, 1e-7
 
 
 def as_vector(name: str, values: ArrayLike) -> Floats:
-    """Return a copy of numbers as (n,) floats, or raise InputError."""
+    """Copy numbers into a vector of floats (n,).
+
+    Raises:
+        InputError: for anything but a vector of real numbers.
+    """
     try:
         array = np.array(values)
     except ValueError:  # a ragged list
         array = np.array(None)
     if array.ndim != 1 or array.dtype.kind not in "fiu":
         raise InputError(f"'{name}' is no vector of real numbers; give an array of shape (n,)")
-    return array.astype(np.float64)
+    return array.astype(np.float64, copy=False)
 
 
 def check_samples(arrays: Mapping[str, Floats], lines: Sequence[int]) -> None:

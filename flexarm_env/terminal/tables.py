@@ -15,6 +15,7 @@ from flexarm_env.identify.results import Addition, Comparison, Diagnosis, Fit, R
 from flexarm_env.pictures import words
 from flexarm_env.pictures.telling import error_by_second
 from flexarm_env.pictures.words import LABELS, NOTHING, PARTS, number
+from flexarm_env.terminal.outputs import discard_stdout
 
 #: Width of a table that goes to a file or a pipe.
 WIDE = 120
@@ -23,10 +24,18 @@ SHORT_RANKING = 8
 LONGEST_LINE = 40
 
 
+class _Console(Console):
+    """A console whose reader may leave: the files that a command writes after its tables are written all the same."""
+
+    def on_broken_pipe(self) -> None:
+        self.quiet = True
+        discard_stdout()
+
+
 def console(to_stderr: bool = False) -> Console:
-    """Return where tables go: stdout, or stderr while stdout is for JSON."""
+    """Open the console for tables: stdout, or stderr while stdout is for JSON."""
     stream = sys.stderr if to_stderr else sys.stdout
-    return Console(file=stream, width=None if stream.isatty() else WIDE, highlight=False, soft_wrap=not stream.isatty())
+    return _Console(file=stream, width=None if stream.isatty() else WIDE, highlight=False, soft_wrap=not stream.isatty())
 
 
 def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:

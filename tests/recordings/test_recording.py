@@ -9,7 +9,7 @@ import pytest
 from recording_files import GOOD, HEADER, refusal, same, save
 
 from flexarm_env.errors import InputError
-from flexarm_env.identify.recording import Recording
+from flexarm_env.recordings.recording import Recording
 
 
 def test_reads_a_native_file(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ import pytest
 import scipy.io
 from recording_files import CU_BOULDER, EMPS, GOOD, LOGGER, refusal, save
 
-from flexarm_env.identify.recording import Recording
+from flexarm_env.recordings.recording import Recording
 
 
 def matlab(folder: Path, **variables: Any) -> Path:

@@ -15,11 +15,13 @@ from numpy.typing import ArrayLike, NDArray
 from flexarm_env.display import Shown
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import write_whole
-from flexarm_env.identify.columns import UNITS, ColumnMap, check_calibration, check_names, load_columns, si_factor
-from flexarm_env.identify.matlab import read_matlab
-from flexarm_env.identify.readers import CONDITIONS, Table, fault, read_bytes, read_text_table
-from flexarm_env.identify.recording_checks import as_vector, check_conditions, check_samples
-from flexarm_env.identify.recording_files import PathLike, files_of
+from flexarm_env.recordings.checks import as_vector, check_conditions, check_samples
+from flexarm_env.recordings.columns import UNITS, ColumnMap, check_calibration, check_names, load_columns, si_factor
+from flexarm_env.recordings.conditions import CONDITIONS
+from flexarm_env.recordings.files import PathLike, files_of, read_bytes
+from flexarm_env.recordings.formats.catalogue import format_of
+from flexarm_env.recordings.messages import file_error
+from flexarm_env.recordings.table import Table
 from flexarm_env.signals import INPUTS, SIGNALS
 
 Floats = NDArray[np.float64]
@@ -44,6 +46,7 @@ class Recording(Shown):
             before the first sample.
         source: the path it was read from; "" if from none.
         sha256: of that file's content; "" if from none.
+        notes: one line each on how the file was read, where a person might expect otherwise.
         gaps: for each step over three median steps, the index of the sample before it and its length [s].
     """
 
@@ -56,6 +59,7 @@ class Recording(Shown):
     conditions: dict[str, float] = field(default_factory=dict)
     source: str = ""
     sha256: str = ""
+    notes: tuple[str, ...] = ()
     gaps: list[tuple[int, float]] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -148,11 +152,11 @@ class Recording(Shown):
         path = Path(path)
         try:
             content = read_bytes(path)
-            table = _table(path, content, layout, measured)
+            table = format_of(path).table(content, layout, measured)
             arrays = {name: _si(name, table, gains) for name in table.values}
             recording = _recording(path.stem, arrays, table.conditions, table.lines, measured)
         except InputError as error:
-            raise fault(path, error) from None
+            raise file_error(path, error) from None
         return replace(recording, source=str(path), sha256=hashlib.sha256(content).hexdigest())
 
     @classmethod
@@ -173,7 +177,7 @@ class Recording(Shown):
         files = files_of([paths] if isinstance(paths, (str, os.PathLike)) else paths)
         layout = None if columns is None else load_columns(columns, measured)
         recordings = [cls.read(file, layout, calibration, measured) for file in files]
-        return _distinct(recordings)
+        return with_distinct_names(recordings)
 
     def write(self, path: PathLike) -> None:
         """Write a CSV file that `read` gives back bit for bit; the file is whole or not there.
@@ -216,16 +220,6 @@ class Recording(Shown):
         )
 
 
-def _table(path: Path, content: bytes, layout: ColumnMap | None, measured: bool) -> Table:
-    if path.suffix.lower() != ".mat":
-        return read_text_table(content, layout, measured)
-    if layout is None:
-        raise InputError("a .mat file needs a [columns] table that names its variables")
-    if not layout.matlab:
-        raise InputError("is a .mat file, but [columns] names text columns; use 'variable'")
-    return read_matlab(content, layout)
-
-
 def _si(name: str, table: Table, calibration: Mapping[str, float]) -> Floats:
     """Return a column in SI; time from its first sample on, taken before scaling so that nothing is lost."""
     factor = si_factor(name, table.sources[name], calibration)
@@ -263,7 +257,7 @@ def _recording(
     )
 
 
-def _distinct(recordings: list[Recording]) -> list[Recording]:
+def with_distinct_names(recordings: Sequence[Recording]) -> list[Recording]:
     """Return recordings whose names differ: by their folder, else by their path."""
     sources = [Path(recording.source) for recording in recordings]
     for names in (

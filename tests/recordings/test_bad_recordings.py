@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from recording_files import GOOD, HEADER, refusal, save
 
 from flexarm_env.errors import InputError
-from flexarm_env.identify.recording import Recording
+from flexarm_env.recordings.recording import Recording
 
 # The first row before a clock was set, the others after.
 LATE_CLOCK = "\n".join([HEADER, "0,1,2", *(f"{1.7e9 + 0.1 * k:.1f},1,2" for k in range(5)), ""])

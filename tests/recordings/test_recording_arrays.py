@@ -15,9 +15,9 @@ from hypothesis.extra.numpy import arrays
 from recording_files import example, same, save
 
 from flexarm_env.errors import InputError
-from flexarm_env.identify import readers
-from flexarm_env.identify.columns import SIGNALS, UNITS
-from flexarm_env.identify.recording import Recording
+from flexarm_env.recordings import table
+from flexarm_env.recordings.columns import SIGNALS, UNITS
+from flexarm_env.recordings.recording import Recording
 
 
 @pytest.mark.parametrize(
@@ -144,4 +144,4 @@ def test_reading_is_fast(tmp_path: Path) -> None:
 
 
 def test_the_largest_file_is_stated_in_bytes() -> None:
-    assert readers.LARGEST_FILE == 256 * 1024**2
+    assert table.LARGEST_FILE == 256 * 1024**2

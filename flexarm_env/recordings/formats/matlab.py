@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.errors import InputError, did_you_mean
-from flexarm_env.identify.columns import ColumnMap
-from flexarm_env.identify.readers import LARGEST_FILE, Table
+from flexarm_env.recordings.columns import ColumnMap
+from flexarm_env.recordings.formats.base import Format
+from flexarm_env.recordings.table import LARGEST_FILE, Table
 
 # The MAT-file format, table "MAT-file data types"; the gaps are reserved.
 _MATRIX, _COMPRESSED = 14, 15
@@ -25,15 +26,21 @@ _MATLAB_NUMBERS = {
 }
 
 
-def read_matlab(content: bytes, columns: ColumnMap) -> Table:
-    """Return the table of a .mat file (version 7 or older) by its column map.
+def read(content: bytes, columns: ColumnMap | None, measured: bool) -> Table:
+    """Read the content of a .mat file (version 7 or older) by its column map.
+
+    Args:
+        content: of the file.
+        columns: its column map, without which no variable is read.
+        measured: whether it must hold a signal, which the map's own check has seen to.
 
     Raises:
         InputError: for version 7.3, a damaged file, or a variable that is absent or no vector of numbers.
     """
     import scipy.io
 
-    wanted = [str(source.place) for source in columns.sources.values()]
+    sources = {} if columns is None else columns.sources
+    wanted = [str(source.place) for source in sources.values()]
     try:
         _check_matlab(content)
         classes = {name: kind for name, _, kind in scipy.io.whosmat(io.BytesIO(content))}
@@ -44,14 +51,14 @@ def read_matlab(content: bytes, columns: ColumnMap) -> Table:
     except Exception:  # a damaged file makes scipy raise nearly anything
         raise InputError("is damaged or no MATLAB file; in MATLAB: save('FILE.mat', '-v7')") from None
     values: dict[str, NDArray[np.float64]] = {}
-    for name, variable in zip(columns.sources, wanted, strict=True):
+    for name, variable in zip(sources, wanted, strict=True):
         if variable not in classes:
             raise InputError(f"column '{name}': no variable {variable!r}{did_you_mean(variable, classes)}")
         values[name] = _vector(name, variable, variables.get(variable))
     lengths = {name: len(value) for name, value in values.items()}
     if len(set(lengths.values())) > 1:
         raise InputError(f"its variables differ in length ({lengths}); give vectors of one length")
-    return Table(values, dict(columns.sources))
+    return Table(values, dict(sources))
 
 
 def _check_matlab(content: bytes) -> None:
@@ -98,3 +105,6 @@ def _vector(name: str, variable: str, value: Any) -> NDArray[np.float64]:
     if not real or not 0 < value.size == max(value.shape):
         raise InputError(f"column '{name}': variable '{variable}' is not a vector of real numbers; save it as n × 1")
     return np.array(value, dtype=np.float64).ravel()
+
+
+FORMAT = Format("MATLAB file", (".mat",), ("variable",), read)

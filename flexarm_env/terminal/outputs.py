@@ -1,4 +1,4 @@
-"""What the commands write: JSON with its provenance, pages, arm files; each whole or not at all."""
+"""Places to write to, checked before the work begins, and JSON that is written whole or not at all."""
 
 from __future__ import annotations
 
@@ -6,16 +6,13 @@ import importlib.util
 import json
 import math
 import os
-import subprocess
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-import flexarm_env
 from flexarm_env.errors import InputError
 from flexarm_env.files import write_whole
-from flexarm_env.identify.recording import Recording
 
 STDOUT = Path("-")
 
@@ -78,31 +75,22 @@ def write_json(path: Path | None, content: Mapping[str, Any]) -> None:
         write_whole(path, text)
 
 
-def provenance(command: str, arm: str, recordings: Sequence[Recording], seed: int | None) -> dict[str, Any]:
-    """Return what a reader needs in order to trust or redo a result."""
-    made: dict[str, Any] = {
-        "command": command,
-        "version": flexarm_env.__version__,
-        "commit": commit(),
-        "arm": arm,
-        "recordings": [{"name": r.name, "sha256": r.sha256} for r in recordings],
-    }
-    return made if seed is None else made | {"seed": seed}
+def make_folder(folder: Path, *names: str) -> None:
+    """Make a folder for files of these names.
 
-
-def commit() -> str | None:
-    """Return the commit of this source tree, with "+" if files differ from it; None where it is no checkout."""
-    here = Path(__file__).resolve().parent.parent
-
-    def git(*arguments: str) -> str:
-        run = subprocess.run(["git", "-C", here, *arguments], capture_output=True, text=True, timeout=5, check=True)
-        return run.stdout.strip()
-
+    Raises:
+        InputError: if it cannot be made, or they cannot be written there.
+    """
     try:
-        git("ls-files", "--error-unmatch", "__init__.py")
-        return git("rev-parse", "HEAD") + ("+" if git("status", "--porcelain", "--untracked-files=no", ".") else "")
-    except (OSError, subprocess.SubprocessError):
-        return None
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot make folder {folder}: {error.strerror}; name another with --output") from None
+    check_places(None, *(folder / name for name in names))
+
+
+def discard_stdout() -> None:
+    """Discard what is printed from now on, because the reader of stdout has left. Python would complain when it shuts down."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
 def _plain(value: Any) -> Any:

@@ -1,0 +1,1 @@
+"""Experiments: recordings that a model makes, and the one to make next on the machine."""

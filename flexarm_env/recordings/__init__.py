@@ -1,0 +1,1 @@
+"""Recordings of an arm: read from files, checked, in SI."""

@@ -1,0 +1,76 @@
+"""By which layout a recording is read: the arm's column map, or the file's own header."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from flexarm_env.errors import InputError
+from flexarm_env.recordings.columns import ColumnMap, Source, native_sources
+from flexarm_env.recordings.formats.text import read_header
+
+#: Bytes of a file in which its header must lie.
+_HEAD = 1 << 16
+
+
+def layout_of(path: Path, columns: ColumnMap, measured: bool = True) -> tuple[ColumnMap | None, str]:
+    """Choose between an arm's column map and the header of a file.
+
+    The map is followed unless the header is FlexArm's own. It is followed there, too, where the file has every column that
+    it names. A map of column numbers must agree with such a header in names and units, because any file has those numbers.
+
+    Args:
+        path: the file.
+        columns: the arm's map.
+        measured: whether the file must hold a signal; commands alone are always read by a header of FlexArm's own.
+
+    Returns:
+        The map, or None to follow the header; and what to note where they differ, else "".
+    """
+    own, texts = _own_header(path)
+    if "time" not in own:
+        return columns, ""
+    by_number = all(source.key == "index" for source in columns.sources.values())
+    found = _found(columns, texts)
+    differing = [name for name, source in found.items() if own.get(name) != source]
+    if len(found) == len(columns.sources):
+        if not by_number or all(_agree(own.get(name), source) for name, source in found.items()):
+            return columns, _note("the arm's [columns]", "its own header differs", differing)
+        return None, _note("its own header", "the arm's [columns] differ", differing)
+    if by_number or not differing:
+        return None, ""
+    return (columns, "") if measured else (None, _note("its own header", "the arm's [columns] differ", differing))
+
+
+def _own_header(path: Path) -> tuple[dict[str, Source], list[str]]:
+    """Return the sources that a header of FlexArm's own states, and its cells; nothing where there is none."""
+    if not path.is_file():  # a pipe would wait for ever
+        return {}, []
+    try:
+        with path.open("rb") as file:
+            texts = read_header(file.read(_HEAD))
+        return native_sources(texts), texts
+    except (OSError, InputError):
+        return {}, []
+
+
+def _found(columns: ColumnMap, texts: list[str]) -> dict[str, Source]:
+    """Return the sources of a map that lie in a header of FlexArm's own, with numbers in the place of texts."""
+    if columns.delimiter != "," or columns.header_prefix:
+        return {}
+    numbers = {text.strip(): number for number, text in enumerate(texts)}
+    found = {}
+    for name, source in columns.sources.items():
+        place = numbers.get(str(source.place).strip()) if source.key == "column" else source.place
+        if isinstance(place, int) and place < len(texts):
+            found[name] = Source(place, source.unit, source.sign, source.scale)
+    return found
+
+
+def _agree(own: Source | None, mapped: Source) -> bool:
+    return own is not None and (own.place, own.unit) == (mapped.place, mapped.unit)
+
+
+def _note(followed: str, other: str, differing: Iterable[str]) -> str:
+    names = ", ".join(differing)
+    return f"read by {followed}; {other} in {names}" if names else ""

@@ -1,0 +1,151 @@
+"""Rows of text cut into cells, and the numbers in them. A fault is one line with its row and column."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.errors import InputError
+from flexarm_env.recordings.columns import ColumnMap
+from flexarm_env.recordings.messages import quoted
+
+# Possessive, so that no cell takes time that grows faster than its length.
+_DECIMAL_COMMA = re.compile(r"\s*+[+-]?+\d++,\d++\s*+")
+_COMMA_AND_THREE = re.compile(r"\s*+[+-]?+[1-9]\d{0,2}+(?:,\d{3})++\s*+")
+
+
+def is_blank(line: str, delimiter: str = " ") -> bool:
+    """Whether a line holds nothing but spaces and tabs, and no empty cells."""
+    return not line.strip(" \t") and (delimiter == " " or delimiter not in line)
+
+
+def cut(line: str, delimiter: str) -> list[str]:
+    """Cut a line into cells; a delimiter of one blank stands for any run of blanks.
+
+    Raises:
+        InputError: for a cell that no CSV file has.
+    """
+    if delimiter == " ":
+        if '"' not in line:
+            return line.split()
+        line = " ".join(line.split())
+    try:
+        return next(csv.reader([line], delimiter=delimiter), [])
+    except csv.Error as error:
+        raise InputError(f"{error}; is this a CSV file?") from None
+
+
+def count_cells(row: str, delimiter: str) -> int:
+    """Count the cells of a row; 0 if it cannot be cut."""
+    if '"' not in row:
+        return len(row.split()) if delimiter == " " else row.count(delimiter) + 1
+    try:
+        return len(cut(row, delimiter))
+    except InputError:
+        return 0
+
+
+def usual_width(counts: Sequence[int]) -> int:
+    """Find the number of cells that most rows have; of two that are as frequent, the larger."""
+    often = Counter(counts)
+    return max(often, key=lambda count: (often[count], count))
+
+
+def is_number(cell: str, decimal: str) -> bool:
+    """Whether a cell is a number as numpy's reader takes it, which refuses Python's 1_000."""
+    try:
+        float(_point(cell, decimal))
+    except ValueError:
+        return False
+    return "_" not in cell and cell.isascii()
+
+
+def _point(cell: str, decimal: str) -> str:
+    """Write a number with a decimal point.
+
+    A point in a file with decimal commas would mark thousands, so it becomes a character that no number has.
+    """
+    return cell.translate({ord("."): "'", ord(","): "."}) if decimal == "," else cell
+
+
+def read_numbers(
+    rows: list[str], lines: Sequence[int], labels: dict[int, str], width: int, even: bool, layout: ColumnMap
+) -> NDArray[np.float64]:
+    """Read the (n, len(labels)) numbers of the columns in `labels`.
+
+    Args:
+        rows: the text of each sample.
+        lines: the index of each in the file.
+        labels: the name of each column wanted, by its 0-based number.
+        width: cells that every row must have.
+        even: whether every row has as many.
+        layout: delimiter and decimal mark.
+
+    Raises:
+        InputError: for the first row of another width, or the first cell that is no number.
+    """
+    # numpy's reader is fast, does not say where a fault is, and checks no width: Python reads again what is not plain.
+    delimiter = layout.delimiter
+    plain = delimiter != " " or not any('"' in row for row in rows)
+    if plain and even and max(labels) < width:
+        try:
+            read = np.loadtxt(
+                rows if layout.decimal == "." else [_point(row, layout.decimal) for row in rows],
+                delimiter=None if delimiter == " " else delimiter,
+                comments=None,
+                quotechar='"',
+                usecols=list(labels),
+                ndmin=2,
+            )
+            if len(read) == len(rows):  # fewer where a quote that opens in one row closes in another
+                return read
+        except ValueError:
+            pass
+    return np.array(list(_row_by_row(rows, lines, labels, width, layout)), dtype=np.float64)
+
+
+def _row_by_row(
+    rows: list[str], lines: Sequence[int], labels: dict[int, str], width: int, layout: ColumnMap
+) -> Iterator[list[float]]:
+    """Yield the numbers of each row; raise InputError at the first fault."""
+    for index, name in labels.items():
+        if index >= width:
+            raise InputError(f"column '{name}': index {index}, but the rows have {width} cells; count from 0")
+    for row, line in zip(rows, lines, strict=True):
+        where = f"row {line + 1}"
+        try:
+            cells = cut(row, layout.delimiter)
+        except InputError as error:
+            raise InputError(f"{where}: {error}") from None
+        if len(cells) != width:
+            hint = _width_hint(row, len(cells), width, layout.delimiter)
+            raise InputError(f"{where}: has {len(cells)} cells where {width} are expected; {hint}")
+        for index, name in labels.items():
+            if not is_number(cells[index], layout.decimal):
+                raise InputError(f"{where}, column '{name}': {_not_a_number(cells[index])}")
+        yield [float(_point(cells[index], layout.decimal)) for index in labels]
+
+
+def _width_hint(row: str, found: int, expected: int, delimiter: str) -> str:
+    if row.lstrip().startswith("#"):
+        return "a remark stands before the header; move it there or remove it"
+    if found < expected:
+        return "is the row cut off?"
+    commas = " Or decimal commas: write 0.5, not 0,5" if delimiter == "," else ""
+    return f"are two rows run together, or does the header lack a name?{commas}"
+
+
+def _not_a_number(cell: str) -> str:
+    if not cell.strip():
+        return "is empty; a number made up would spoil the comparison: remove the row, or the column"
+    if _COMMA_AND_THREE.fullmatch(cell):
+        whole = quoted(cell.strip().replace(",", ""))[1:-1]
+        return f"{quoted(cell)} has a comma, which may mark thousands or decimals; write {whole} or a decimal point"
+    if _DECIMAL_COMMA.fullmatch(cell):
+        return f"{quoted(cell)} has a decimal comma; write {quoted(cell.strip().replace(',', '.'))[1:-1]}"
+    return f"{quoted(cell)} is not a number; correct it or remove the row"

@@ -1,0 +1,56 @@
+"""The contract of a format of recording files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from flexarm_env.errors import InputError
+from flexarm_env.recordings.checks import as_vector
+from flexarm_env.recordings.columns import ColumnMap
+from flexarm_env.recordings.table import Table
+
+
+@dataclass(frozen=True)
+class Format:
+    """A kind of file that holds recordings.
+
+    Attributes:
+        name: for messages, such as "MATLAB file".
+        suffixes: of its files, in lower case, such as (".mat",). A folder stands for the files that have one of them.
+        keys: by which entries of a `[columns]` table a column is found in it: "column", "index", "variable".
+        read: makes a table of a file's content, its column map (None if there is none) and whether a signal must be there.
+            Every fault is an InputError, without the file's name.
+        needs_map: whether only a column map says which column is which.
+        also: suffixes that such a file may have, too, but that files in a folder may have for other reasons.
+    """
+
+    name: str
+    suffixes: tuple[str, ...]
+    keys: tuple[str, ...]
+    read: Callable[[bytes, ColumnMap | None, bool], Table]
+    needs_map: bool = True
+    also: tuple[str, ...] = ()
+
+    def table(self, content: bytes, columns: ColumnMap | None, measured: bool) -> Table:
+        """Read the content of a file.
+
+        Args:
+            content: of the file.
+            columns: its column map, if there is one.
+            measured: whether it must hold a signal.
+
+        Raises:
+            InputError: for a column map that is missing or of another format, and for what the format cannot read.
+        """
+        use = " or ".join(f"'{key}'" for key in self.keys)
+        if columns is None and self.needs_map:
+            raise InputError(f"a {self.name} needs a [columns] table that names its columns by {use}")
+        for name, source in columns.sources.items() if columns else ():
+            if source.key not in self.keys:
+                raise InputError(f"is a {self.name}, but [columns] has '{source.key}' for '{name}'; use {use}")
+        table = self.read(content, columns, measured)
+        values = {name: as_vector(name, numbers) for name, numbers in table.values.items()}
+        if not all(map(len, values.values())):
+            raise InputError("has a column without samples; it needs at least two in each")
+        return replace(table, values=values)

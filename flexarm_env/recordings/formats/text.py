@@ -1,0 +1,149 @@
+"""Text tables: FlexArm's own CSV files, and any others by a column map."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.recordings.cells import count_cells, cut, is_blank, is_number, read_numbers, usual_width
+from flexarm_env.recordings.columns import ColumnMap, Source, check_names, native_sources
+from flexarm_env.recordings.conditions import add_condition
+from flexarm_env.recordings.formats.base import Format
+from flexarm_env.recordings.messages import quoted
+from flexarm_env.recordings.table import MOST_LINES, Table
+
+
+def read(content: bytes, columns: ColumnMap | None, measured: bool) -> Table:
+    """Read the content of a text file: one with FlexArm's own header, or any other by a column map.
+
+    Args:
+        content: of the file.
+        columns: its column map, if there is one.
+        measured: whether it must hold a signal.
+
+    Raises:
+        InputError: naming row (line of the file, counted from 1) and column.
+    """
+    count = max(content.count(b"\n"), content.count(b"\r"))
+    if count > MOST_LINES:
+        raise InputError(f"has {count} lines, the limit is {MOST_LINES}; cut it into shorter recordings")
+    layout = columns or ColumnMap()
+    lines = _decode(content).replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    first, conditions = _preamble(lines, layout.skip_rows)
+    header, body = _header(lines, first, layout)
+    sources = native_sources(header) if columns is None else _places(header, layout)
+    check_names(tuple(sources), measured)
+    numbers = [row for row in range(body, len(lines)) if not is_blank(lines[row], layout.delimiter)]
+    if not numbers:
+        raise InputError(f"has no samples after row {body}; it needs at least two rows of numbers")
+    labels = {int(source.place): name for name, source in sources.items()}
+    rows = [lines[row] for row in numbers]
+    counts = [count_cells(row, layout.delimiter) for row in rows]
+    width = len(header) if columns is None else usual_width(counts)
+    if any(source.key == "column" for source in layout.sources.values()):
+        _check_header(header, body, labels, width, layout.delimiter)
+    even = counts.count(width) == len(rows)
+    table = read_numbers(rows, numbers, labels, width, even, layout)
+    values = {name: table[:, i] for i, name in enumerate(labels.values())}
+    return Table(values, sources, conditions, [row + 1 for row in numbers])
+
+
+def read_header(head: bytes) -> list[str]:
+    """Read the cells of the header of a file that begins with these bytes and has no column map.
+
+    Raises:
+        InputError: if there is no such header.
+    """
+    whole, _, _ = head.replace(b"\r", b"\n").rpartition(b"\n")  # the last line may be cut off, within a character, too
+    lines = _decode(whole or head).split("\n")
+    first, _ = _preamble(lines, 0)
+    return _header(lines, first, ColumnMap())[0]
+
+
+def _decode(content: bytes) -> str:
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        row = content.count(b"\n", 0, error.start) + 1
+        raise InputError(f"row {row}: is not UTF-8 text; save it as CSV in UTF-8") from None
+    if "\0" in text:
+        raise InputError("is a binary file, not text; save it as CSV in UTF-8")
+    return text
+
+
+def _preamble(lines: Sequence[str], skip: int) -> tuple[int, dict[str, float]]:
+    """Count the lines before the header, and read the conditions that they state."""
+    conditions: dict[str, float] = {}
+    for row in range(skip, len(lines)):
+        line = lines[row].strip()
+        if not line.startswith("#") and not is_blank(lines[row]):
+            return row, conditions
+        try:
+            add_condition(line, conditions)
+        except InputError as error:
+            raise InputError(f"row {row + 1}: {error}") from None
+    raise InputError("has no header row; write one such as 'time [s],current [A],arm_angle [rad]'")
+
+
+def _header(lines: Sequence[str], first: int, layout: ColumnMap) -> tuple[list[str], int]:
+    """Cut the header into cells ([] where a mapped file has none); return them and the index of the line after it."""
+    mark = layout.header_prefix
+    last = first
+    if mark:
+        if not lines[first].startswith(mark):
+            raise InputError(f"row {first + 1}: no header; [columns] says that it starts with {mark!r}")
+        while last + 1 < len(lines) and lines[last + 1].startswith(mark):
+            last += 1
+    header = cut(lines[last].removeprefix(mark), layout.delimiter)
+    if any(is_number(cell, layout.decimal) for cell in header):
+        by_index = layout.sources and all(source.key == "index" for source in layout.sources.values())
+        if by_index and not mark:
+            return [], last
+        raise InputError(f"row {last + 1}: numbers where the header should be; write one such as 'time [s],current [A]'")
+    if len(header) == 1:
+        for other, word in ((";", "semicolons"), ("\t", "tabs")):
+            if other in header[0]:
+                raise InputError(
+                    f"row {last + 1}: the columns are separated by {word}; save with commas and decimal"
+                    f" points, or give a [columns] table with delimiter = {other!r}"
+                )
+    return header, last + 1
+
+
+def _places(header: Sequence[str], layout: ColumnMap) -> dict[str, Source]:
+    """Replace the header texts of a column map by column numbers."""
+    texts = [cell.strip() for cell in header]
+    sources: dict[str, Source] = {}
+    for name, source in layout.sources.items():
+        place = source.place
+        if isinstance(place, str):
+            if texts.count(place.strip()) > 1:
+                raise InputError(f"column '{name}': the header has {quoted(place)} twice; use 'index'")
+            if place.strip() not in texts:
+                raise InputError(f"column '{name}': no {quoted(place)} in the header{_hint(place, texts)}")
+            place = texts.index(place.strip())
+        twin = next((other for other in sources if sources[other].place == place), None)
+        if twin:
+            raise InputError(f"columns '{twin}' and '{name}': both map to column {place}; correct one of them")
+        sources[name] = Source(place, source.unit, source.sign, source.scale)
+    return sources
+
+
+def _hint(text: str, texts: Sequence[str]) -> str:
+    if len(texts) == 1:
+        return f", which is one column, {quoted(texts[0])}: is the delimiter right?"
+    return did_you_mean(text, [other[:40] for other in texts[:20]])
+
+
+def _check_header(header: Sequence[str], row: int, labels: dict[int, str], width: int, delimiter: str) -> None:
+    """Refuse a header by whose cells columns cannot be counted. Empty ones may end it, and nameless columns the rows."""
+    named = len(header)
+    while named and not header[named - 1].strip():
+        named -= 1
+    if named > width or (named < width and delimiter == " "):
+        beyond = next((f", none for '{name}'" for index, name in labels.items() if index >= width), "")
+        hint = "is there a blank in a name? give 'index' in place of 'column'" if delimiter == " " else "is the delimiter right?"
+        raise InputError(f"row {row}: the header has {named} names, the rows have {width} cells{beyond}; {hint}")
+
+
+FORMAT = Format("text table", (".csv",), ("column", "index"), read, needs_map=False, also=(".txt", ".dat"))

@@ -1,0 +1,19 @@
+"""Texts of a person's files in messages: quoted, cut short, on one line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from flexarm_env.errors import InputError
+
+_LONGEST = 40
+
+
+def quoted(text: str) -> str:
+    """Quote a file's text, cut to what a message can hold."""
+    return repr(text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}...")
+
+
+def file_error(path: Path, what: object) -> InputError:
+    """Make the error of a file. Characters of path or content that would break the line are escaped."""
+    return InputError("".join(c if c.isprintable() else repr(c)[1:-1] for c in f"{path}: {what}"))

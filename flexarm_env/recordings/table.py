@@ -1,0 +1,33 @@
+"""The table of raw numbers that a format makes of a file, and how large it may be."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.recordings.columns import Source
+
+#: Bytes.
+LARGEST_FILE = 256 * 2**20
+#: Lines of a text file, as many as the samples of a simulated run.
+MOST_LINES = 10_000_000
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns of a file before units.
+
+    Attributes:
+        values: (n,) numbers by FlexArm name, in the file's units.
+        sources: by FlexArm name, the unit, sign and scale of those numbers.
+        conditions: known conditions in SI, such as payload [kg].
+        lines: for each sample its line in the file, counted from 1; empty where a format has no lines.
+    """
+
+    values: dict[str, NDArray[np.float64]]
+    sources: dict[str, Source]
+    conditions: dict[str, float] = field(default_factory=dict)
+    lines: Sequence[int] = ()

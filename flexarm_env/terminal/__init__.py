@@ -1,0 +1,1 @@
+"""Tools that command line, lab, demo and thesis share: files in, progress, tables, files out."""

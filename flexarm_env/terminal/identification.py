@@ -1,0 +1,50 @@
+"""Compare, fit, add and diagnose with a progress bar."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import flexarm_env
+from flexarm_env.arm import Arm
+from flexarm_env.recordings.recording import Recording
+from flexarm_env.terminal.progress import progress
+
+if TYPE_CHECKING:
+    from flexarm_env.identify.results import Addition, Comparison, Diagnosis, Fit
+
+
+def compare(arm: Arm, recordings: Sequence[Recording]) -> Comparison:
+    """Compare an arm with its recordings."""
+    with progress("comparing") as bar:
+        return flexarm_env.compare(arm, list(recordings), progress=bar)
+
+
+def fit(arm: Arm, recordings: Sequence[Recording], seed: int) -> Fit:
+    """Refit the constants."""
+    with progress("fitting") as bar:
+        return flexarm_env.fit(arm, list(recordings), progress=bar, seed=seed)
+
+
+def add(effect: str, arm: Arm, recordings: Sequence[Recording], seed: int) -> Addition:
+    """Add an effect and refit."""
+    arm.with_effect(effect)  # refuses what cannot be added before a bar shows
+    with progress(f"adding {effect}") as bar:
+        return flexarm_env.add(effect, arm, list(recordings), progress=bar, seed=seed)
+
+
+def diagnose(arm: Arm, recordings: Sequence[Recording], seed: int, jobs: int) -> Diagnosis:
+    """Find out whether constants are wrong or an effect is missing."""
+    with progress("diagnosing") as bar:
+        return flexarm_env.diagnose(arm, list(recordings), progress=bar, seed=seed, jobs=jobs)
+
+
+def write_page(
+    path: Path, recordings: Sequence[Recording], before: Comparison, diagnosis: Diagnosis | None, made: Mapping[str, Any]
+) -> None:
+    """Write the page of a comparison or a diagnosis; arguments as those of `report.write_report`."""
+    from flexarm_env.terminal.report import write_report
+
+    with progress("writing the report") as bar:
+        write_report(path, recordings, before, diagnosis, made, bar)

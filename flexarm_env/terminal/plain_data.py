@@ -1,0 +1,46 @@
+"""Results as plain data for JSON."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from flexarm_env.pictures import words
+
+if TYPE_CHECKING:
+    from flexarm_env.identify.results import Addition, Comparison, Fit
+
+
+def of_comparison(result: Comparison) -> dict[str, Any]:
+    """Give a comparison without its curves."""
+    return {
+        "error": result.error,
+        "free_run": result.free_run,
+        "noise": result.noise,
+        "rows": [vars(row) for row in result.rows],
+        "notes": result.notes,
+    }
+
+
+def of_fit(result: Fit) -> dict[str, Any]:
+    """Give the errors and constants of a fit."""
+    return {
+        "error": result.error,
+        "free_run": result.free_run,
+        "constants": {words.constant_name(e): e.as_json() for e in result.estimates},
+        "seconds": round(result.seconds, 1),
+    }
+
+
+def of_addition(result: Addition) -> dict[str, Any]:
+    """Give the errors, parameters and constants of an added effect."""
+    prefix = f"effects.{result.effect}."
+    own = [e for e in result.estimates if e.path.startswith(prefix)]
+    others = [e for e in result.estimates if not e.path.startswith(prefix)]
+    return {
+        "effect": result.effect,
+        "parameters": {e.path.removeprefix(prefix): e.as_json() for e in own},
+        "error": result.error,
+        "free_run": result.free_run,
+        "constants": {words.constant_name(e): e.as_json() for e in others},
+        "seconds": round(result.seconds, 1),
+    }

@@ -1,0 +1,38 @@
+"""How a result was made: command, version, commit, arm and recordings."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import flexarm_env
+from flexarm_env.recordings.recording import Recording
+
+
+def provenance(command: str, arm: str, recordings: Sequence[Recording], seed: int | None) -> dict[str, Any]:
+    """Gather the facts that a reader needs in order to trust or redo a result."""
+    made: dict[str, Any] = {
+        "command": command,
+        "version": flexarm_env.__version__,
+        "commit": commit(),
+        "arm": arm,
+        "recordings": [{"name": r.name, "sha256": r.sha256} for r in recordings],
+    }
+    return made if seed is None else made | {"seed": seed}
+
+
+def commit() -> str | None:
+    """Return the commit of this source tree, with "+" if files differ from it; None where it is no checkout."""
+    here = Path(__file__).resolve().parent.parent
+
+    def git(*arguments: str) -> str:
+        run = subprocess.run(["git", "-C", here, *arguments], capture_output=True, text=True, timeout=5, check=True)
+        return run.stdout.strip()
+
+    try:
+        git("ls-files", "--error-unmatch", "__init__.py")
+        return git("rev-parse", "HEAD") + ("+" if git("status", "--porcelain", "--untracked-files=no", ".") else "")
+    except (OSError, subprocess.SubprocessError):
+        return None

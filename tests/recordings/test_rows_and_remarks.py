@@ -1,0 +1,235 @@
+"""No cell, row or remark is lost without a word, and no line takes time that grows faster than its length."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from recording_files import GOOD, HEADER, refusal, save
+
+from flexarm_env import units
+from flexarm_env.arm import Arm
+from flexarm_env.errors import InputError
+from flexarm_env.lab.uploads import read_upload
+from flexarm_env.recordings.recording import Recording
+
+MANY = 1_000_000
+NAMES = ("time", "current", "arm_angle")
+in_any_folder = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+
+
+def by_index(delimiter: str, places: list[int], decimal: str = ".") -> dict[str, Any]:
+    columns = {name: {"index": i, "unit": u} for name, i, u in zip(NAMES, places, ("s", "A", "rad"), strict=True)}
+    return {"delimiter": delimiter, "decimal": decimal, **columns}
+
+
+@st.composite
+def foreign_tables(draw: st.DrawFn) -> tuple[dict[str, Any], np.ndarray, list[list[str]]]:
+    """Draw a map, the numbers of its three columns, and the cells of every row, of which others hold text or numbers."""
+    delimiter = draw(st.sampled_from([" ", "\t", ",", ";", "|"]))
+    decimal = "." if delimiter == "," else draw(st.sampled_from([".", ","]))
+    width = draw(st.integers(3, 7))
+    places = draw(st.permutations(range(width)))[:3]
+    rows = draw(st.integers(3, 8))
+    pairs = draw(arrays(np.int64, (rows, 2), elements=st.integers(-99, 99)))
+    numbers = np.column_stack([np.arange(rows) / 8, pairs])
+    others = st.sampled_from(["7", "note", f'"a{delimiter}b"', '""', f'"{delimiter}"'])
+    cells = [[draw(others) for _ in range(width)] for _ in range(rows)]
+    for row, values in zip(cells, numbers.tolist(), strict=True):
+        for place, value in zip(places, values, strict=True):
+            row[place] = repr(value).replace(".", decimal)
+    return by_index(delimiter, list(places), decimal), numbers, cells
+
+
+def written(cells: list[list[str]], table: dict[str, Any]) -> str:
+    return "".join(table["delimiter"].join(row) + "\n" for row in cells)
+
+
+@in_any_folder
+@given(foreign_tables())
+def test_each_column_is_read_from_its_own_cells(tmp_path: Path, drawn: Any) -> None:
+    table, numbers, cells = drawn
+    recording = Recording.read(save(tmp_path, written(cells, table)), table)
+    assert np.array_equal(np.column_stack([recording.time, recording.command, recording.signals["arm_angle"]]), numbers)
+
+
+@in_any_folder
+@given(foreign_tables(), st.data())
+def test_a_row_with_other_cells_than_the_rest_is_named(tmp_path: Path, drawn: Any, data: st.DataObject) -> None:
+    table, _, cells = drawn
+    row = data.draw(st.integers(0, len(cells) - 1))
+    width = len(cells[0])
+    if data.draw(st.booleans()):
+        cells[row].insert(data.draw(st.integers(0, width)), "99")
+    else:
+        del cells[row][data.draw(st.integers(0, width - 1))]
+    message = refusal(save(tmp_path, written(cells, table)), columns=table)
+    assert f"row {row + 1}: has {len(cells[row])} cells where {width} are expected" in message
+
+
+def test_a_header_of_other_cells_than_the_rows_is_refused(tmp_path: Path) -> None:
+    names = {"time": {"column": "t", "unit": "s"}, "current": {"column": "i", "unit": "A"}}
+    table = {"delimiter": " ", **names, "arm_angle": {"column": "phi", "unit": "rad"}}
+    for header in ("t i [A] phi", "i t phi x", "t phi i x"):
+        message = refusal(save(tmp_path, f"{header}\n0 1 2\n1 1 2\n2 1 2\n"), columns=table)
+        assert "row 1: the header has 4 names, the rows have 3 cells" in message
+        assert "index" in message
+    assert "the header has 3 names, the rows have 4 cells" in refusal(
+        save(tmp_path, "t i phi\n1 0 1 2\n2 1 1 2\n"), columns=table
+    )
+    assert "4 names" in refusal(save(tmp_path, "t,i,x,phi\n0,1,2\n1,1,2\n"), columns={**table, "delimiter": ","})
+    for text in ("t,i,phi,,\n0,1,2\n1,1,2\n", "t,i,phi\n0,1,2,\n1,1,2,\n"):  # delimiters at the end move no column
+        assert Recording.read(save(tmp_path, text), {**table, "delimiter": ","}).signals["arm_angle"].tolist() == [2, 2]
+
+
+@pytest.mark.parametrize("junk", ["\u00a0", "\x0b", "\x0c", "\x1c", "\x1d", "\x1e", "\x85", "\u2028", "\u3000", "\ufeff", "."])
+def test_a_row_of_one_odd_character_is_not_dropped(tmp_path: Path, junk: str) -> None:
+    assert "row 3: has 1 cells where 3 are expected" in refusal(save(tmp_path, GOOD.replace("0.1,2", f"{junk}\n0.1,2")))
+    assert "row" in refusal(save(tmp_path, f"0 1 2\n1 1 2\n{junk}\n2 1 2\n"), columns=by_index(" ", [0, 1, 2]))
+    if junk != "\ufeff":  # which may begin any file
+        refusal(save(tmp_path, f"{junk}\n{GOOD}"))
+
+
+def test_a_row_of_tabs_is_empty_cells_where_tabs_part_them(tmp_path: Path) -> None:
+    assert "row 2, column 'time': is empty" in refusal(
+        save(tmp_path, "0\t1\t2\n\t\t\n2\t1\t2\n"), columns=by_index("\t", [0, 1, 2])
+    )
+    assert len(Recording.read(save(tmp_path, GOOD + "\t\t\n  \n"))) == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (f"{HEADER}\n" + "1,0.5\n0.1,2,0.6\n0.2,3,0.7\n", "row 2: has 2 cells where 3 are expected; is the row cut off?"),
+        (GOOD + "# end of log\n", "row 5: has 1 cells where 3 are expected; a remark stands before the header"),
+        (GOOD.replace("0.1,2,0.6\n", "0.1,2,0.60.2"), "row 3: has 5 cells"),
+        (GOOD.replace("0.6", '"2,000"'), "may mark thousands or decimals; write 2000 or"),
+        (GOOD.replace("0.6", '"-1,234,567"'), "write -1234567 or"),
+        (GOOD.replace("0.6", '"0,600"'), "write 0.600"),
+        (GOOD.replace("2,0.6", ",0.6"), "row 3, column 'current': is empty; a number made up would spoil"),
+    ],
+)
+def test_what_to_do_is_no_advice_that_spoils(tmp_path: Path, text: str, words: str) -> None:
+    assert words in refusal(save(tmp_path, text))
+
+
+def test_a_first_row_cut_off_at_its_start_is_named(tmp_path: Path) -> None:
+    message = refusal(save(tmp_path, "20\n1 2 11\n2 1 12\n"), columns=by_index(" ", [0, 1, 2]))
+    assert "row 1: has 1 cells where 3 are expected; is the row cut off?" in message
+
+
+@pytest.mark.parametrize(
+    "remark",
+    [
+        "payload 0.3 kg",
+        "payload [kg] 0.3",
+        "Payload: 0.3 kg",
+        "PAYLOAD = 0.3 kg",
+        "payloads: 0.3 kg",
+        "payloads = 0.3 kg",
+        "payload is 0.3 kg",
+        "payload -> 0.3 kg (steel)",
+        "tip payload = 0.3 kg",
+        "the payload: 0,3 kg",
+        "payload 300 g",
+        "payload 0.3",
+        "start 5 s",
+    ],
+)
+def test_a_condition_in_other_words_is_not_lost(tmp_path: Path, remark: str) -> None:
+    message = refusal(save(tmp_path, f"# {remark}\n{GOOD}"))
+    assert message.startswith("row 1: ")
+    assert "did you mean" in message
+
+
+@pytest.mark.parametrize(
+    "remark",
+    [
+        "payload removed",
+        "start of run: 5 s",
+        "no payload",
+        "started 12:30",
+        "Start: 2017-04-27",
+        "state: 3",
+        "rate: 500 Hz",
+        "payload 2 of 3",
+    ],
+)
+def test_other_remarks_are_let_be(tmp_path: Path, remark: str) -> None:
+    assert Recording.read(save(tmp_path, f"# {remark}\n{GOOD}")).conditions == {}
+
+
+def test_the_hint_can_be_copied(tmp_path: Path) -> None:
+    message = refusal(save(tmp_path, f"# payload 0,3 kg\n{GOOD}"))
+    assert message.endswith("did you mean '# payload = 0.3 kg'?")
+    assert Recording.read(save(tmp_path, f"# payload = 0.3 kg\n{GOOD}")).conditions == {"payload": 0.3}
+
+
+LONG = [
+    " ",
+    "\t",
+    "1",
+    "a",
+    "[",
+    "]",
+    "[ ",
+    "] ",
+    "#",
+    "=",
+    "= ",
+    ":",
+    "\u00a0",
+    "_",
+    ".",
+    "1.",
+    "e",
+    "1e",
+    "^",
+    " *",
+    "/ ",
+    "kg ",
+    "-",
+    "µ",
+    '"',
+    "(",
+]
+LINES = [
+    "# note = x{}y",
+    "# payload = 1 k{}g",
+    "# payload = 1{}",
+    "# payload{}",
+    "#{}",
+    "# note [{}] = 1",
+    "# note = 1 {}?",
+    "time{}[s],current [A]",
+]
+
+
+def seconds(line: str, filler: str, work: Callable[[str], Any]) -> float:
+    """Return how long a million blanks in a line take, or a fifth as many of anything else."""
+    text = line.format(filler * (MANY // (1 if filler.isspace() else 5) // len(filler)))
+    start = time.perf_counter()
+    with contextlib.suppress(InputError):
+        work(text)
+    return time.perf_counter() - start
+
+
+@pytest.mark.parametrize("line", LINES)
+def test_no_line_before_the_numbers_takes_longer_than_it_is(line: str) -> None:
+    arm = Arm.load("thesis")
+    for filler in LONG:
+        assert seconds(line, filler, lambda text: read_upload(arm, "run.csv", f"{text}\n{GOOD}".encode(), None, [])) < 1, filler
+
+
+@pytest.mark.parametrize("text", ["{}", "1{}", "1 {}g", "1 k{}g", "1.{}kg", "1e{}", "-{}1", "1 kg{}", "1 kg {}m"])
+def test_no_quantity_takes_longer_than_it_is(text: str) -> None:
+    for filler in LONG:
+        assert seconds(text, filler, units.is_quantity) < 1, filler
