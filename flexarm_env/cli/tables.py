@@ -12,7 +12,7 @@ from rich.text import Text
 
 from flexarm_env.identify.results import Addition, Comparison, Diagnosis, Estimate, Fit, Row
 from flexarm_env.pictures import words
-from flexarm_env.pictures.telling import error_by_second
+from flexarm_env.pictures.highlight import error_by_second
 from flexarm_env.pictures.words import LABELS, NOTHING, PARTS, number
 
 #: Width of a table that goes to a file or a pipe.

@@ -1,4 +1,4 @@
-"""The loop on the shipped recordings: compare, diagnose, add, compare; numbers and pictures into a folder."""
+"""The loop on the shipped recordings: compare, diagnose, add, compare. Numbers and pictures go to a folder."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from flexarm_env.pictures import words
 
 ARM = "thesis-fem"
 JOBS = 2
-#: What an independent simulator was told to hide in the recordings; read only after the diagnosis, for the last line.
+#: The effect that the independent simulator put into the recordings; read only after the diagnosis, for the last line.
 HIDDEN = ("backlash", "gap", 0.06, "rad")
 
 
-def tell(output: Path, seed: int = 0, json: Path | None = None) -> bool:
+def run_demo(output: Path, seed: int = 0, json: Path | None = None) -> bool:
     """Run the demonstration; return whether an effect was found.
 
     Args:
-        output: folder for pictures, page and numbers; it is made.
-        seed: of everything random.
-        json: where else the numbers go.
+        output: folder for pictures, page and numbers; it is created.
+        seed: of all random numbers.
+        json: a second file for the numbers.
 
     Raises:
         InputError: if the folder cannot be made or written.
@@ -79,7 +79,7 @@ def _steps(added: Addition) -> tuple[list[tuple[str, float]], list[tuple[str, fl
 
 
 def _resolve(added: Addition | None) -> str:
-    """Say what was hidden, beside what was found."""
+    """Write the hidden effect beside the estimate."""
     effect, parameter, size, unit = HIDDEN
     made = "Hidden in the recordings, by a simulator that shares no code with this"
     hidden = f"{made}: {effect}, {parameter} = {size} {unit}."

@@ -1,4 +1,4 @@
-"""The report: one self-contained page of a comparison or a diagnosis, what matters most on top."""
+"""The report: one self-contained page of a comparison or a diagnosis, with the verdict on top."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.results import Comparison, Diagnosis, Estimate
 from flexarm_env.pictures import bars, effect_figures, overlays, residuals, words
 from flexarm_env.pictures.document import bullets, document, figure, folded, panels, paragraph, section, table
-from flexarm_env.pictures.telling import replay_of, worst_signals
+from flexarm_env.pictures.highlight import replay_of, worst_signals
 
 OVER_NOISE = "Held-out rms error over the noise; 1 (dotted) is perfect, hatched boxes are what a step removed."
 
 
 @dataclass(frozen=True)
 class Findings:
-    """Everything that a report shows.
+    """Contents of a report.
 
     Attributes:
-        before: the arm as it came.
+        before: comparison of the arm as given.
         recordings: of the machine, in the order of the comparison's replays.
-        after: the corrected arm.
-        diagnosis: how it was found.
-        curves: of effects that act on the hub; in an unexplained case, of what is left.
-        without: the corrected arm without each of its other new effects, by the effect's name.
-        provenance: "command_line", "version", "commit", "seed": how to redo it.
+        after: comparison of the corrected arm.
+        diagnosis: that led to the corrected arm.
+        curves: of effects that act on the hub; of the remaining torque where the verdict is unknown.
+        without: comparison of the corrected arm less one new effect, by the effect's name.
+        provenance: "command_line", "version", "commit" and "seed", which reproduce the report.
     """
 
     before: Comparison
@@ -41,7 +41,7 @@ class Findings:
 
 
 def page(found: Findings) -> str:
-    """Return the page's HTML."""
+    """Build the page's HTML."""
     before, diagnosis = found.before, found.diagnosis
     sentence = words.comparison(before) if diagnosis is None else words.verdict(diagnosis)
     parts = [paragraph(sentence, "verdict"), _glance(found), bullets((diagnosis or before).notes)]
@@ -54,7 +54,7 @@ def page(found: Findings) -> str:
 
 
 def _glance(found: Findings) -> str:
-    drawn, where = overlays.stretch(found.before, found.after)
+    drawn, where = overlays.informative_window(found.before, found.after)
     shown = [figure(drawn, "glance-where", "Where it fails", where)]
     diagnosis = found.diagnosis
     if diagnosis is not None and diagnosis.ranking:
@@ -115,14 +115,14 @@ def _constants(diagnosis: Diagnosis) -> str:
     values = list(diagnosis.constants.values())
     if not values:
         return ""
-    drawn = bars.shifts(values)
+    drawn = bars.constant_changes(values)
     caption = "Bars are 90 % intervals. Filled: the value in the arm file lies outside. Open: it lies inside."
     parts = [] if drawn is None else [figure(drawn, "constants", "", caption)]
     return section("Constants before and after", *parts, estimates(values))
 
 
 def estimates(found: Sequence[Estimate]) -> str:
-    """Return a table of fitted values with intervals, beside the values that they had."""
+    """Format a table of fitted values with intervals, beside the values as given."""
     rows = [
         [
             words.constant_name(e),
@@ -157,7 +157,7 @@ def _next_run(diagnosis: Diagnosis) -> str:
 
 
 def _errors(before: Comparison, after: Comparison | None) -> str:
-    """Return the errors by signal and part, before and after."""
+    """Format the errors by signal and regime, before and after."""
     alone = len(before.replays) == 1
     rows = [r for r in before.rows if (r.recording == "all" or alone) and r.samples]
     later = {(r.recording, r.signal, r.part): r for r in after.rows} if after is not None else {}
@@ -180,7 +180,7 @@ def _residuals(found: Findings) -> str:
         label = words.LABELS[signal][0]
         shown = []
         for driver in drivers:
-            drawn = residuals.against(driver, found.before, found.after, signal)
+            drawn = residuals.versus_driver(driver, found.before, found.after, signal)
             shown.append(figure(drawn, f"{signal}-{driver.name}", f"Against {driver.name}"))
         spectrum = residuals.spectrum(found.before, found.after, signal)
         shown.append(figure(spectrum, f"{signal}-spectrum", "As spectrum", "White noise of the sensor's size is 1 throughout."))
