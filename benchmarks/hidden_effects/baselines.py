@@ -1,4 +1,4 @@
-"""What others do, on the same plant and the same fits: best fit wins, and stepwise by the Bayesian information criterion."""
+"""Baselines on the same plant and the same fits: best fit, and stepwise selection by the Bayesian information criterion."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ MOST_EFFECTS = 3
 
 
 def stepwise(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
-    """Add the effect that fits best while the Bayesian information criterion falls (Schwarz, Ann. Stat. 6 (1978) 461).
+    """Add the best-fitting effect while the Bayesian information criterion falls (Schwarz, Ann. Stat. 6 (1978) 461).
 
-    Its first step is what `best_fit_wins` answers, and is kept with the seconds of one core that came after it, as "first_step".
+    "first_step" holds the answer of `best_fit_wins`, which is the first step, with the core seconds spent after it.
     """
     nominal, data = prepare(arm, recordings)
     base = found = best_refit(nominal, data)
@@ -40,7 +40,7 @@ def stepwise(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
 
 
 def best_fit_wins(stepped: dict[str, Any]) -> dict[str, Any]:
-    """Take the effect that fits best, always (the ladder of models of Rhoban's BAM: Duclusaud et al., arXiv 2410.08650).
+    """Take the best-fitting effect, always (the ladder of models of Rhoban's BAM: Duclusaud et al., arXiv 2410.08650).
 
     Args:
         stepped: the benchmark's answer by `stepwise`.
@@ -50,7 +50,7 @@ def best_fit_wins(stepped: dict[str, Any]) -> dict[str, Any]:
 
 
 def _best(found: Refit, nominal: Arm, data: Data) -> tuple[str, Refit] | None:
-    """Return the effect whose addition fits the recordings best, and the arm refitted with it."""
+    """Find the effect with the best fit when added, and the arm refitted with it."""
     base = screening_base(found, data)
     trials = [attempt(base, s) for name in candidates(found.arm) for s in signatures(base, name)]
     if not trials:
@@ -60,13 +60,13 @@ def _best(found: Refit, nominal: Arm, data: Data) -> tuple[str, Refit] | None:
 
 
 def _criterion(found: Refit, data: Data) -> float:
-    """Return BIC: the sum of squares of the errors in windows over the noise, and what the parameters cost."""
+    """Compute BIC: the sum of squared errors in windows over the noise, plus the penalty on parameters."""
     count = sum(int(run.train.sum()) for run in data.runs) * len(data.signals)
     return count * score(found.arm, data, held_out=False).windows ** 2 + len(found.coordinates) * math.log(count)
 
 
 def answer(effects: list[str], nominal: Arm, base: Refit, found: Refit, data: Data) -> dict[str, Any]:
-    """Return what a method found, in the form of a diagnosis."""
+    """Convert a method's result to the form of a diagnosis."""
     before, first, last = (score(arm, data) for arm in (nominal, base.arm, found.arm))
     verdict = "effects" if effects else "parameters"
     return {

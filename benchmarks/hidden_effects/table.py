@@ -13,7 +13,7 @@ from flexarm_env.files import write_whole
 
 
 def markdown(found: Sequence[Figure], mistakes: Sequence[tuple[str, str, int]], made: str) -> str:
-    """Return the table of figures against goals, and that of what was taken for what."""
+    """Format the table of figures against goals, and the table of confusions."""
     lines = ["# Hidden effects", "", made, "", "| | goal | measured | |", "|---|---|---:|---|"]
     lines += [f"| {f.what} | {f.goal} | {f.text} | {f.judged} |" for f in found]
     lines += ["", "Single effects that were not named first, and what was said instead:", ""]
