@@ -59,7 +59,7 @@ def first(answer: Answer) -> str | None:
     return effects[0] if effects else None
 
 
-def either(effects: Iterable[str]) -> set[str]:
+def merge_twins(effects: Iterable[str]) -> set[str]:
     """Map effects to names that are common to twins."""
     return {TWINS.get(effect, effect) for effect in effects}
 
@@ -71,7 +71,7 @@ def is_right(answer: Answer) -> bool:
 
 def is_right_or_twin(answer: Answer) -> bool:
     """Whether the first effect named is the hidden one, or its twin."""
-    return either(answer["found"]["effects"][:1]) == either(answer["case"]["effects"][:1])
+    return merge_twins(answer["found"]["effects"][:1]) == merge_twins(answer["case"]["effects"][:1])
 
 
 def is_in_class(answer: Answer) -> bool:
@@ -92,7 +92,7 @@ def both_right(answer: Answer) -> bool:
 
 def both_right_or_twins(answer: Answer) -> bool:
     """Whether exactly the hidden effects are named, or their twins."""
-    return either(answer["found"]["effects"]) == either(answer["case"]["effects"])
+    return merge_twins(answer["found"]["effects"]) == merge_twins(answer["case"]["effects"])
 
 
 def right_side(answer: Answer) -> bool:
@@ -103,7 +103,7 @@ def right_side(answer: Answer) -> bool:
 
 def _is_late(answer: Answer) -> bool:
     """Whether the hidden effect is a delay: no recording shows whether it lies in the sensor or in the drive."""
-    return "input_delay" in either(answer["case"]["effects"][:1])
+    return "input_delay" in merge_twins(answer["case"]["effects"][:1])
 
 
 def verdict_in(*verdicts: str) -> Callable[[Answer], bool]:
@@ -175,7 +175,7 @@ def figures(answers: Iterable[Answer]) -> list[Figure]:
     ]
 
 
-def wrong(answers: Iterable[Answer]) -> list[tuple[str, str, int]]:
+def confusions(answers: Iterable[Answer]) -> list[tuple[str, str, int]]:
     """Count the confusions of single effects: hidden effect, effect named in its place, number of cases."""
     counts: Counter[tuple[str, str]] = Counter()
     for answer in answers:

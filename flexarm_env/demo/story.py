@@ -49,7 +49,7 @@ def run_demo(output: Path, seed: int = 0, json: Path | None = None) -> bool:
         tables.show(out, tables.steps(*_steps(added)))
         _heading(out, "flexarm compare RECORDINGS --arm THE-NEW-ARM", words.comparison(after))
         content |= {"add": work.addition_json(added), "compare_after": work.comparison_json(after)}
-    out.print(Text(_resolve(added)))
+    out.print(Text(_compare_with_truth(added)))
     provenance = outputs.provenance("demo", ARM, recordings, seed)
     page = output / "report.html"
     command = {"command_line": f"flexarm diagnose flexarm_env/demo --arm {ARM} --seed {seed}"}
@@ -78,15 +78,15 @@ def _steps(added: Addition) -> tuple[list[tuple[str, float]], list[tuple[str, fl
     return words.steps_of(added.error, [added.effect]), words.steps_of(added.free_run, [added.effect])
 
 
-def _resolve(added: Addition | None) -> str:
+def _compare_with_truth(added: Addition | None) -> str:
     """Write the hidden effect beside the estimate."""
     effect, parameter, size, unit = HIDDEN
-    made = "Hidden in the recordings, by a simulator that shares no code with this"
-    hidden = f"{made}: {effect}, {parameter} = {size} {unit}."
+    made = "The hidden effect, put in by a simulator that shares no code with this"
+    hidden = f"{made}, was {effect}, {parameter} = {size} {unit}."
     found = None
     if added is not None and added.effect == effect:
         found = next((e for e in added.estimates if e.path == f"effects.{effect}.{parameter}"), None)
-    return hidden if found is None else f"{hidden} Found: {words.value_of(found)}."
+    return hidden if found is None else f"{hidden} The estimate is {words.value_of(found)}."
 
 
 def _draw(output: Path, before: Comparison, after: Comparison, diagnosis: Diagnosis) -> list[Path]:

@@ -67,8 +67,8 @@ def contribution(without: Comparison, after: Comparison) -> tuple[go.Figure, str
     added = new.windows[signal] - old.windows[signal]
     figure = go.Figure()
     for values, line, name in (
-        (missing, MEASURED_LINE | {"width": 7.0}, "missing without it"),
-        (added, AFTER_LINE | {"width": 2.0}, "what it adds"),
+        (missing, MEASURED_LINE | {"width": 7.0}, "residual without it"),
+        (added, AFTER_LINE | {"width": 2.0}, "its contribution"),
     ):
         figure.add_trace(curve(old.time[inside], values[inside], step, line=line, name=name))
     figure.update_xaxes(title_text="time [s]")

@@ -14,7 +14,7 @@ from flexarm_env.pictures import bars, effect_figures, overlays, residuals, word
 from flexarm_env.pictures.document import bullets, document, figure, folded, panels, paragraph, section, table
 from flexarm_env.pictures.highlight import replay_of, worst_signals
 
-OVER_NOISE = "Held-out rms error over the noise; 1 (dotted) is perfect, hatched boxes are what a step removed."
+OVER_NOISE = "Held-out rms error over the noise; 1 (dotted) is perfect, hatched boxes are the part removed by a step."
 
 
 @dataclass(frozen=True)
@@ -59,8 +59,8 @@ def _glance(found: Findings) -> str:
     diagnosis = found.diagnosis
     if diagnosis is not None and diagnosis.ranking:
         rivals = any(len(names) > 1 for names in diagnosis.equivalent)
-        caption = "✓ accepted; ≈ these data cannot tell it from that." if rivals else "✓ accepted."
-        shown.append(figure(bars.ranking(diagnosis, 6), "glance-which", "What is missing", caption))
+        caption = "✓ accepted; ≈ indistinguishable from it in these data." if rivals else "✓ accepted."
+        shown.append(figure(bars.ranking(diagnosis, 6), "glance-which", "Missing effect", caption))
     if diagnosis is not None:
         steps = words.steps_of(diagnosis.error, diagnosis.effects)
         shown.append(figure(bars.waterfall(steps), "glance-fall", "How the error fell", "Held out, over the noise."))
@@ -76,17 +76,17 @@ def _curves(found: Findings) -> str:
     for curve in found.curves:
         name = curve.effect.replace("_", " ") or "unexplained torque"
         caption = (
-            f"The torque on the hub that the recordings ask for, estimated without any law of friction, against {curve.driver}, "
-            f"while the hub moves{'' if curve.effect else '; less what the arm explains'}."
+            f"Torque on the hub estimated from the recordings, without any friction law, against {curve.driver}, "
+            f"while the hub moves{'' if curve.effect else '; less the torque that the arm explains'}."
         )
         shown.append(figure(effect_figures.own_curve(curve), f"curve-{curve.effect}-{curve.driver}", name, caption))
     for effect, without in found.without.items():
         assert found.after is not None
         drawn, where = effect_figures.contribution(without, found.after)
-        caption = f"Measured less the corrected model without it, and what it adds to that model ({where})."
+        caption = f"Residual of the corrected model without the effect, and the effect's contribution ({where})."
         shown.append(figure(drawn, f"share-{effect}", effect.replace("_", " "), caption))
     unknown = found.diagnosis is not None and not found.diagnosis.effects
-    heading = "What nothing explains" if unknown else "The effect's own curve"
+    heading = "Unexplained torque" if unknown else "The effect's curve"
     return section(heading, panels(shown, wide=True)) if shown else ""
 
 
@@ -96,7 +96,7 @@ def _ranking(diagnosis: Diagnosis) -> str:
     same = {name for names in diagnosis.equivalent for name in names}
     rows = []
     for one in diagnosis.ranking:
-        word = "accepted" if one.accepted else "cannot be told from it" if one.effect in same else ""
+        word = "accepted" if one.accepted else "indistinguishable from it" if one.effect in same else ""
         rows.append([one.effect, word, words.parameters_of(one.estimates) or words.NOTHING, f"{100 * one.gain:.0f} %"])
     columns = ["effect", "", "parameters (90 % interval)", "gain"]
     text = "Gain is the share of the refitted model's excess held-out error (error² − 1) that the effect removes."
@@ -140,9 +140,9 @@ def _smallest(diagnosis: Diagnosis) -> str:
     rows = [
         [effect, one.parameter, words.number(one.value), words.plain_unit(one.unit)] for effect, one in diagnosis.smallest.items()
     ]
-    text = "An effect below this size could be there, and these recordings would not show it."
+    text = "An effect below this size would not be detected in these recordings."
     return (
-        section("What could still hide", paragraph(text), table(["effect", "parameter", "size", "unit"], rows, words=2))
+        section("Smallest detectable sizes", paragraph(text), table(["effect", "parameter", "size", "unit"], rows, words=2))
         if rows
         else ""
     )
@@ -209,4 +209,4 @@ def _redo(found: Findings) -> str:
     facts += [f"seed {made['seed']}" if made.get("seed") is not None else ""]
     command = f"<pre tabindex=0>{escape(str(made['command_line']))}</pre>" if made.get("command_line") else ""
     text = paragraph(", ".join(fact for fact in facts if fact))
-    return section("How to redo it", command, text, table(["recording", "SHA-256 of its file"], files, words=2, code=(1,)))
+    return section("How to reproduce it", command, text, table(["recording", "SHA-256 of its file"], files, words=2, code=(1,)))

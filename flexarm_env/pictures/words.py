@@ -132,16 +132,16 @@ def verdict(diagnosis: Diagnosis) -> str:
     error = diagnosis.error
     final = number(error["final"])
     if diagnosis.verdict == "nothing_missing":
-        return f"Nothing is missing: the arm explains these recordings to {final} × the noise."
+        return f"No effect is missing: the arm explains these recordings to {final} × the noise."
     if diagnosis.verdict == "parameters":
-        return f"No effect is missing. The constants were off: refitted, the error falls {arrows(error)} × the noise."
+        return f"No effect is missing. The constants were wrong: after a refit the error falls {arrows(error)} × the noise."
     if diagnosis.verdict == "unknown":
         return (
-            f"Something is missing that nothing in the catalogue explains: the error stays at {final} × the noise, "
+            f"An effect is missing, and none of the catalogue explains these recordings: the error stays at {final} × the noise, "
             f"from {number(error['nominal'])} as given."
         )
     if diagnosis.verdict == "insufficient_data":
-        return f"These recordings cannot tell: the error is {final} × the noise."
+        return f"These recordings are insufficient for a diagnosis: the error is {final} × the noise."
     return " ".join([_missing(diagnosis), _doubt(diagnosis)]).strip()
 
 
@@ -155,7 +155,7 @@ def _missing(diagnosis: Diagnosis) -> str:
 
 def _doubt(diagnosis: Diagnosis) -> str:
     rivals = [(names[0], names[1:]) for names in diagnosis.equivalent if len(names) > 1]
-    return " ".join(f"These data cannot tell {name} from {' or '.join(others)}." for name, others in rivals)
+    return " ".join(f"These data cannot distinguish {name} from {' or '.join(others)}." for name, others in rivals)
 
 
 def addition(result: Addition) -> str:

@@ -29,13 +29,13 @@ def experiment_1() -> tuple[Arm, list[Recording]]:
     drive = {**motor.constants["drive"], "resistance": RESISTANCE}
     arm = replace(motor, input="voltage", effects={}, constants={**motor.constants, "drive": drive})
     speed, emf = back_emf()
-    return _showing(arm, EMF_SCATTER, "motor_inertia"), [_staircase("experiment 1", "voltage", emf, speed, EMF_HOLD)]
+    return _with_tachometer(arm, EMF_SCATTER, "motor_inertia"), [_staircase("experiment 1", "voltage", emf, speed, EMF_HOLD)]
 
 
 def experiment_2() -> tuple[Arm, list[Recording]]:
     """Build the model kφ I = b ω + T_f, and experiment 2 as a staircase of currents."""
     stairs = _staircase("experiment 2", "current", EXPERIMENT_2[:, 1] / 1000.0, EXPERIMENT_2[:, 5], POWER_HOLD)
-    return _showing(arms.motor_alone(POWER_INERTIA), POWER_SCATTER, "motor_inertia", "torque_constant"), [stairs]
+    return _with_tachometer(arms.motor_alone(POWER_INERTIA), POWER_SCATTER, "motor_inertia", "torque_constant"), [stairs]
 
 
 def experiment_3() -> tuple[Arm, list[Recording]]:
@@ -46,10 +46,10 @@ def experiment_3() -> tuple[Arm, list[Recording]]:
         shown = np.where(time < TANGENT, speed + slope * time, 0.0)
         name = f"run-down from {speed:g} rad/s"
         recordings.append(Recording.from_arrays(name, time, "current", np.zeros(len(time)), {"motor_speed": shown}))
-    return _showing(arms.motor_alone().without_effect("coulomb"), RUN_DOWN_SCATTER, "torque_constant"), recordings
+    return _with_tachometer(arms.motor_alone().without_effect("coulomb"), RUN_DOWN_SCATTER, "torque_constant"), recordings
 
 
-def _showing(arm: Arm, scatter: float, *known: str) -> Arm:
+def _with_tachometer(arm: Arm, scatter: float, *known: str) -> Arm:
     """Reduce the arm's sensors to a tachometer of a noise [rad/s]; fix its gain and some constants of the drive."""
     fixed = ("sensors.motor_speed.gain", *(f"drive.{name}" for name in known))
     return replace(arm, fixed=fixed, sensors={"motor_speed": {**arm.sensors["motor_speed"], "noise": scatter}})
