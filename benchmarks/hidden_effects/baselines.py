@@ -1,4 +1,4 @@
-"""What others do, on the same plant and the same fits: best fit wins, and stepwise by the Bayesian information criterion."""
+"""Baselines on the same plant and the same fits: best fit, and stepwise selection by the Bayesian information criterion."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ MOST_EFFECTS = 3
 
 
 def stepwise(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
-    """Add the effect that fits best while the Bayesian information criterion falls (Schwarz, Ann. Stat. 6 (1978) 461).
+    """Add the best-fitting effect while the Bayesian information criterion falls (Schwarz, Ann. Stat. 6 (1978) 461).
 
-    Its first step is what `best_fit_wins` answers, and is kept with the seconds of one core that came after it, as "first_step".
+    "first_step" holds the answer of `best_fit_wins`, which is the first step, with the core seconds spent after it.
     """
     calibrator = Calibrator(*prepare(arm, recordings))
     base = found = calibrator.constants()
@@ -42,7 +42,7 @@ def stepwise(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
 
 
 def best_fit_wins(stepped: dict[str, Any]) -> dict[str, Any]:
-    """Take the effect that fits best, always (the ladder of models of Rhoban's BAM: Duclusaud et al., arXiv 2410.08650).
+    """Take the best-fitting effect, always (the ladder of models of Rhoban's BAM: Duclusaud et al., arXiv 2410.08650).
 
     Args:
         stepped: the benchmark's answer by `stepwise`.
@@ -52,7 +52,7 @@ def best_fit_wins(stepped: dict[str, Any]) -> dict[str, Any]:
 
 
 def _best(calibrator: Calibrator, found: Calibration) -> tuple[str, Calibration] | None:
-    """Return the effect whose addition fits the recordings best, and the arm refitted with it."""
+    """Find the effect with the best fit when added, and the arm refitted with it."""
     base = baseline(found, calibrator.dataset)
     trials = [trial for name in candidates(found.arm, calibrator.dataset) for trial in try_effect(base, name)]
     if not trials:
@@ -62,14 +62,14 @@ def _best(calibrator: Calibrator, found: Calibration) -> tuple[str, Calibration]
 
 
 def _criterion(calibrator: Calibrator, found: Calibration) -> float:
-    """Return BIC: the sum of squares of the errors in windows over the noise, and what the parameters cost."""
+    """Compute BIC: the sum of squared errors in windows over the noise, plus the penalty on parameters."""
     data = calibrator.dataset
     count = sum(int(run.train.sum()) for run in data.runs) * len(data.signals)
     return count * calibrator.score(found.arm, held_out=False).windows ** 2 + len(found.parameters) * math.log(count)
 
 
 def answer(effects: list[str], calibrator: Calibrator, base: Calibration, found: Calibration) -> dict[str, Any]:
-    """Return what a method found, in the form of a diagnosis."""
+    """Convert a method's result to the form of a diagnosis."""
     errors = [calibrator.score(arm).windows for arm in (calibrator.nominal, base.arm, found.arm)]
     verdict = "effects" if effects else "parameters"
     return {

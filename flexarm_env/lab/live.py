@@ -1,4 +1,4 @@
-"""Recordings kept ready, so that a changed arm is simulated at once."""
+"""Recordings prepared once, for immediate replays of a changed arm."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ class Simulated:
 
 
 class Live:
-    """Recordings prepared once, and an arm simulated through them as often as wanted.
+    """Recordings prepared once for any number of replays.
 
     Args:
-        arm: for its sensors and noise.
+        arm: defines sensors and noise.
         recordings: of the machine.
 
     Attributes:
-        signals: that arm and recordings have in common.
+        signals: common to arm and recordings.
 
     Raises:
         InputError: for recordings that do not fit the arm.
@@ -55,7 +55,7 @@ class Live:
         self._threads = ThreadPoolExecutor(max_workers=4, thread_name_prefix="flexarm-live")
 
     def simulate(self, arm: Arm) -> Simulated:
-        """Return free replays of all recordings."""
+        """Replay all recordings freely."""
         known = self._reduced(arm)
         readings = list(self._threads.map(lambda run: self._replay(known, run), self.data.runs))
         off = [(run.measured - y) / self.data.noise for run, y in zip(self.data.runs, readings, strict=True)]
@@ -63,7 +63,7 @@ class Live:
         return Simulated({run.name: y for run, y in zip(self.data.runs, readings, strict=True)}, float(np.sqrt(squares.mean())))
 
     def held_out(self, arm: Arm) -> Score:
-        """Return the held-out errors of an arm; this takes about a second."""
+        """Compute the held-out errors of an arm; this takes about a second."""
         return score(self._reduced(arm), self.data)
 
     def _reduced(self, arm: Arm) -> Arm:

@@ -1,4 +1,4 @@
-"""The stretch of the recordings that shows best what a correction did."""
+"""The most informative window of the recordings: the one in which a correction reduces the residual most."""
 
 from __future__ import annotations
 
@@ -13,37 +13,37 @@ ZOOM, CLOSE = 1.6, 0.8  # [s], in print and on a page that may be a phone's
 
 
 def replay_of(comparison: Comparison, recording: str) -> Replay:
-    """Return the replay of a recording by its name."""
+    """Find the replay of a recording by its name."""
     return next(replay for replay in comparison.replays if replay.name == recording)
 
 
-def most_telling(before: Comparison, after: Comparison | None = None, length: float = ZOOM) -> tuple[str, str, float]:
-    """Return recording, signal and start [s] of the stretch whose residual falls most, in units of the noise.
+def most_informative_window(before: Comparison, after: Comparison | None = None, length: float = ZOOM) -> tuple[str, str, float]:
+    """Locate the window in which the residual over the noise falls most: recording, signal, start [s].
 
     Args:
-        before: the arm as it came.
-        after: the corrected arm; without it, or if nothing falls, the stretch is the one whose residual is largest.
-        length: of the stretch [s].
+        before: of the arm as given.
+        after: of the corrected arm; without it, or where no residual falls, the window has the largest residual.
+        length: of the window [s].
     """
     best, found = -np.inf, ("", "", 0.0)
     for old in before.replays:
         new = None if after is None else replay_of(after, old.name)
         span = min(max(int(length / float(np.median(np.diff(old.time)))), 1), len(old.time))
         for signal in words.signals_of(list(old.measured)):
-            gains = _falls(old, new, signal, before.noise[signal], span)
+            gains = _reduction(old, new, signal, before.noise[signal], span)
             if gains.size and gains.max() > best:
                 best, found = float(gains.max()), (old.name, signal, float(old.time[int(gains.argmax())]))
-    return most_telling(before, None, length) if after is not None and best <= 0.0 else found
+    return most_informative_window(before, None, length) if after is not None and best <= 0.0 else found
 
 
 def worst_signals(comparison: Comparison) -> list[str]:
-    """Return the signals, the one with the largest error over noise first."""
+    """Sort the signals by error over noise, the largest first."""
     powers = {s: sum(float(_power(r, s, n).sum()) for r in comparison.replays) for s, n in comparison.noise.items()}
     return sorted(words.signals_of(list(powers)), key=lambda signal: -powers[signal])
 
 
 def error_by_second(replays: Sequence[Replay], noise: dict[str, float]) -> list[list[float]]:
-    """Return, for each recording, the rms error over noise of all signals in each second."""
+    """Compute, for each recording, the rms error over noise of all signals in each second."""
     out = []
     for one in replays:
         power = np.mean([_power(one, signal, noise[signal]) for signal in one.measured], axis=0)
@@ -52,8 +52,8 @@ def error_by_second(replays: Sequence[Replay], noise: dict[str, float]) -> list[
     return out
 
 
-def _falls(old: Replay, new: Replay | None, signal: str, noise: float, span: int) -> np.ndarray:
-    """Return by how much the sum of squares over `span` samples falls, by its first sample."""
+def _reduction(old: Replay, new: Replay | None, signal: str, noise: float, span: int) -> np.ndarray:
+    """Compute the reduction of the sum of squares over `span` samples, by first sample."""
     fall = _power(old, signal, noise) - (0.0 if new is None else _power(new, signal, noise))
     sums = np.cumsum(np.concatenate([[0.0], fall]))
     return np.asarray(sums[span:] - sums[:-span])
