@@ -218,6 +218,6 @@ def _put(table: Any, key: str, value: float, unit: str) -> None:
     if key == "elements":
         table[key] = int(value)
     elif unit and math.isfinite(value):
-        table[key] = f"{value!r} {unit}"
+        table[key] = f"{float(value)!r} {unit}"
     else:
         table[key] = float(value)

@@ -14,8 +14,13 @@ if TYPE_CHECKING:
 
 # A whitelist, because pint evaluates what it is given: "V**9**9**9" would not return.
 _TERM = r"[A-Za-zµμΩ°]+(?:_[A-Za-z]+)*(?: *(?:\^|\*\*) *-?\d|[²³])?"
-_UNIT = re.compile(rf"(?:1 */ *)?{_TERM}(?: *[*/·] *{_TERM}| +{_TERM})*")
-_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?:\s*$|\s*(?=[^\d\s.,:;-])(.*?)\s*$)")
+_GROUP = rf"\({_TERM}(?: *[*/·] *{_TERM}| +{_TERM})*\)(?:(?:\^|\*\*)-?\d|[²³])?"
+_FACTOR = rf"(?:{_TERM}|{_GROUP})"
+_UNIT = re.compile(rf"(?:1 */ *)?{_FACTOR}(?: *[*/·] *{_FACTOR}| +{_FACTOR})*")
+# No digit may follow the number, lest "2 000" be read as 2, but for a unit such as 1/s that stands apart.
+_QUANTITY = re.compile(
+    r"([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)(?:(?:\s+(?=1 */)|\s*(?=[^\d\s.,:;-]))(.*))?",
+)
 _LONGEST = 60
 # Without these pint reads Nm as "number metre", a count of yarn, and the others not at all.
 _COMPOUNDS = (
@@ -138,13 +143,13 @@ def as_float(value: float) -> float:
 
 def is_quantity(text: str) -> bool:
     """Tell whether a text has the form of a number, alone or with a unit (which need not exist)."""
-    match = _QUANTITY.match(text)
+    match = _QUANTITY.fullmatch(text.strip())
     return bool(match and (not match[2] or _UNIT.fullmatch(match[2])))
 
 
 def split(text: str) -> tuple[float, str]:
     """Return the finite number and the unit ("" if none) of a text such as "0.0116 rad"."""
-    match = _QUANTITY.match(text)
+    match = _QUANTITY.fullmatch(text.strip())
     if match is None or not math.isfinite(float(match[1])):
         raise InputError(f"{text[:_LONGEST]!r} is not a number with a unit; write for example '0.3 kg'")
     return float(match[1]), match[2] or ""
