@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from flexarm_env.identify.fit import add, fit
     from flexarm_env.identify.recording import Recording
     from flexarm_env.identify.simulate import simulate
+    from flexarm_env.sensors import Sensor
 
 #: Where each public name lives: loaded at first use, so that importing the package stays quick.
 _PLACES = {
@@ -26,6 +27,7 @@ _PLACES = {
     "catalogue": "effects",
     "InputError": "errors",
     "Recording": "identify.recording",
+    "Sensor": "sensors",
     "add": "identify.fit",
     "compare": "identify.compare",
     "diagnose": "identify.diagnose",
@@ -38,6 +40,7 @@ __all__ = [
     "Effect",
     "InputError",
     "Recording",
+    "Sensor",
     "add",
     "catalogue",
     "compare",

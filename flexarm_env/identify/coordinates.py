@@ -20,7 +20,6 @@ WIDEST = 30.0
 BASE_STEP, EFFECT_STEP, WIDEST_STEP = 1e-3, 1e-2, 0.3
 #: What splits friction between motor and hub, which are one body unless the gears give way.
 SHARES = ("drive.motor_coulomb_share", "drive.motor_stiction_share")
-SENSOR_SPREAD = {"arm_angle": 0.0, "motor_speed": 0.03, "strain_mid": 0.15, "strain_base": 0.15, "tip_deflection": 0.15}
 
 
 @dataclass(frozen=True)
@@ -84,7 +83,7 @@ def base_coordinates(arm: Arm, nominal: Arm, scales: Mapping[str, float]) -> lis
             found += _with_prior(path, nominal.value(path), arm.parameter(path).spread, arm)
     for signal in arm.sensors:
         path = f"sensors.{signal}.gain"
-        found += _with_prior(path, nominal.value(path), SENSOR_SPREAD[signal], arm)
+        found += _with_prior(path, nominal.value(path), arm.parameter(path).spread, arm)
     for name in arm.effects:
         if name in nominal.effects:
             found += effect_coordinates(arm, name, scales, nominal)
@@ -112,8 +111,8 @@ def effect_coordinates(arm: Arm, name: str, scales: Mapping[str, float], nominal
         return []
     found = []
     for key, parameter in effect.parameters.items():
-        if key in ("arm_angle", "motor_speed", "strain_mid", "strain_base", "tip_deflection") and key not in arm.sensors:
-            continue  # an offset of a sensor that the arm does not have
+        if effect.per_sensor and key not in arm.sensors:
+            continue
         if parameter.spread == 0.0:
             continue
         known = nominal is not None and name in nominal.effects

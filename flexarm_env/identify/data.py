@@ -16,8 +16,8 @@ from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.run import Run, cut
 from flexarm_env.identify.scales import scales_of
 from flexarm_env.identify.start import find_start
+from flexarm_env.parameters import INPUTS
 from flexarm_env.plant.plant import NO_INTERVALS, Plant
-from flexarm_env.signals import INPUTS
 
 Floats = NDArray[np.float64]
 

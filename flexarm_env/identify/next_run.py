@@ -14,7 +14,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.simulate import simulate
-from flexarm_env.signals import INPUTS
+from flexarm_env.parameters import INPUTS
 
 Floats = NDArray[np.float64]
 

@@ -20,7 +20,8 @@ from flexarm_env.identify.matlab import read_matlab
 from flexarm_env.identify.readers import CONDITIONS, Table, fault, read_bytes, read_text_table
 from flexarm_env.identify.recording_checks import as_vector, check_conditions, check_samples
 from flexarm_env.identify.recording_files import PathLike, files_of
-from flexarm_env.signals import INPUTS, SIGNALS
+from flexarm_env.parameters import INPUTS
+from flexarm_env.sensors import known_sensors
 
 Floats = NDArray[np.float64]
 Columns = PathLike | Mapping[str, Any] | ColumnMap
@@ -112,8 +113,8 @@ class Recording(Shown):
         if input_kind not in INPUTS:
             raise InputError(f"{name}: unknown input {input_kind!r}{did_you_mean(input_kind, INPUTS)}")
         for signal in signals:
-            if signal not in SIGNALS:
-                raise InputError(f"{name}: unknown signal {signal!r}{did_you_mean(signal, SIGNALS)}")
+            if signal not in known_sensors():
+                raise InputError(f"{name}: unknown signal {signal!r}{did_you_mean(signal, known_sensors())}")
         columns = {"time": time, input_kind: command, **signals}
         if reference is not None:
             columns["reference"] = reference
@@ -182,7 +183,7 @@ class Recording(Shown):
             InputError: if the file cannot be written.
         """
         columns = {"time": self.time, self.input_kind: self.command}
-        columns |= {name: self.signals[name] for name in SIGNALS if name in self.signals}
+        columns |= {name: self.signals[name] for name in known_sensors() if name in self.signals}
         if self.reference is not None:
             columns["reference"] = self.reference
         remarks = [f"# {name} = {value!r} {CONDITIONS.get(name, '')}".rstrip() for name, value in self.conditions.items()]
@@ -257,7 +258,7 @@ def _recording(
         time=arrays["time"],
         input_kind=kind,
         command=arrays[kind],
-        signals={signal: arrays[signal] for signal in SIGNALS if signal in arrays},
+        signals={signal: arrays[signal] for signal in known_sensors() if signal in arrays},
         reference=arrays.get("reference"),
         conditions=conditions,
     )

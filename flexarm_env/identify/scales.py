@@ -9,10 +9,11 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.identify.run import Run
 from flexarm_env.plant.structure import assemble
+from flexarm_env.sensors import known_sensors
 
-#: Torque [Nm], range of angle [rad], range over the root of the time [rad/√s], largest command [A] and range of strain [V] in
-#: recordings of the thesis's arm, which is 1 m long; its inertia at the hub [kg m²].
-THESIS_TORQUE, THESIS_ANGLE, THESIS_SPEED, THESIS_COMMAND, THESIS_STRAIN, THESIS_INERTIA = 0.35, 2.5, 0.8, 5.0, 9.0, 0.147
+#: Torque [Nm], range of angle [rad], range over the root of the time [rad/√s] and largest command [A] in recordings of the
+#: thesis's arm, which is 1 m long; its inertia at the hub [kg m²].
+THESIS_TORQUE, THESIS_ANGLE, THESIS_SPEED, THESIS_COMMAND, THESIS_INERTIA = 0.35, 2.5, 0.8, 5.0, 0.147
 
 
 def torque_scale(arm: Arm, runs: Sequence[Run]) -> float:
@@ -51,9 +52,7 @@ def scales_of(arm: Arm, runs: Sequence[Run], signals: Sequence[str]) -> dict[str
         speed = max(float(max(rates)), 1e-12) / THESIS_SPEED
     angle = max(angle, 1e-9)
     length, inertia = arm.structure().length or 1.0, _inertia(arm) / THESIS_INERTIA
-    gages = [i for i, s in enumerate(signals) if s.startswith("strain")]
-    strain = max((float(np.ptp(run.measured[:, i])) for run in runs for i in gages), default=0.0) / THESIS_STRAIN or 1.0
-    return {
+    return _signal_scales(runs, signals) | {
         "N*m": torque,
         "N*m*s": torque / speed,
         "N*m/rad": torque / angle,
@@ -61,9 +60,18 @@ def scales_of(arm: Arm, runs: Sequence[Run], signals: Sequence[str]) -> dict[str
         "N*s**2/m**3": torque / speed**2 / length**4,
         "kg": inertia / length**2,
         "kg*m**2": inertia,
-        "V": strain,
-        "V/s": strain,
         "1/rad": 1.0 / angle,
         "rad/s": speed,
         "command": max(max(float(np.abs(run.command).max()) for run in runs) / THESIS_COMMAND, 1e-9),
     }
+
+
+def _signal_scales(runs: Sequence[Run], signals: Sequence[str]) -> dict[str, float]:
+    """Return how many times as large signals are, by their unit and for drift by their unit per second."""
+    sizes: dict[str, float] = {}
+    for i, signal in enumerate(signals):
+        sensor = known_sensors()[signal]
+        if sensor.usual_range is not None:
+            size = max(float(np.ptp(run.measured[:, i])) for run in runs) / sensor.usual_range
+            sizes[sensor.unit] = max(sizes.get(sensor.unit, 0.0), size)
+    return {name: size or 1.0 for unit, size in sizes.items() for name in (unit, f"{unit}/s")}

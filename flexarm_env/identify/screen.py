@@ -129,7 +129,7 @@ def first_start(arm: Arm, effect: str, scales: Mapping[str, float]) -> dict[str,
 def _by_sensor(base: Base, effect: str, start: dict[str, float]) -> list[dict[str, float]]:
     """Return a start in the scales of the data; for offsets, one for each sensor."""
     known, data = base.problem.arm.known[effect], base.problem.data
-    if effect == "sensor_offset":
+    if known.per_sensor:
         noise = dict(zip(data.signals, data.noise, strict=True))
         return [{key: (float(noise[key]) if key == signal else 0.0) for key in known.parameters} for signal in noise]
     return [_scaled(base.problem.arm, effect, start, data.scales)]

@@ -7,15 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from flexarm_env.arm import short_name
 from flexarm_env.identify.results import Addition, Candidate, Comparison, Diagnosis, Estimate
+from flexarm_env.sensors import known_sensors
 
-#: What a person calls each signal, and its unit.
-LABELS = {
-    "arm_angle": ("arm angle", "rad"),
-    "motor_speed": ("motor speed", "rad/s"),
-    "strain_mid": ("strain, middle", "V"),
-    "strain_base": ("strain, base", "V"),
-    "tip_deflection": ("tip deflection", "m"),
-}
 NOTHING = "–"
 _BARS = "▁▂▃▄▅▆▇█"
 _EIGHTHS = " ▏▎▍▌▋▊▉"
@@ -96,7 +89,17 @@ def bar(share: float, width: int = 12) -> str:
 
 def signals_of(rows: Sequence[str]) -> list[str]:
     """Return the signals among names, in their usual order."""
-    return [name for name in LABELS if name in rows]
+    return [name for name in known_sensors() if name in rows]
+
+
+def label_of(signal: str) -> str:
+    """Return the words for a signal, "all signals" for none."""
+    return known_sensors()[signal].label if signal in known_sensors() else "all signals"
+
+
+def unit_of(signal: str) -> str:
+    """Return a signal's unit as print has it."""
+    return plain_unit(known_sensors()[signal].unit)
 
 
 def steps_of(error: Mapping[str, float], effects: Sequence[str] = ()) -> list[tuple[str, float]]:
