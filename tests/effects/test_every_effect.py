@@ -59,10 +59,9 @@ GRID = {
 def arm() -> Arm:
     """An arm that has every sensor, so that every effect can be added."""
     thesis = Arm.load("thesis-fem")
-    tip = {**thesis.sensors["arm_angle"], "noise": 1e-3, "resolution": 0.0}
-    made = replace(thesis, sensors={**thesis.sensors, "tip_deflection": tip})
-    assert set(made.sensors) == set(known_sensors())
-    return made
+    others = {name: sensor for name, sensor in known_sensors().items() if name not in thesis.sensors}
+    defaults = {name: {key: p.typical for key, p in sensor.settings().items()} for name, sensor in others.items()}
+    return replace(thesis, sensors={**thesis.sensors, **{name: values | {"noise": 1e-3} for name, values in defaults.items()}})
 
 
 def sized(effect: type[Effect], share: float) -> dict[str, float]:
