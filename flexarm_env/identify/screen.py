@@ -157,8 +157,9 @@ def _secant(base: Base, effect: str, start: dict[str, float]) -> Signature:
     if power <= 1e-12 * total:
         return Signature(effect, start, 0.0, 0.0)
     along = float(change @ left)
-    if along > 0.0 and "phase" in start:  # the sine wants to be turned round
-        start = {**start, "phase": start["phase"] - float(np.copysign(np.pi, start["phase"]))}
+    phase = base.problem.arm.known[effect].scan_phase
+    if along > 0.0 and phase:  # the sine wants to be turned round
+        start = {**start, phase: start[phase] - float(np.copysign(np.pi, start[phase]))}
         along = -along
     return Signature(effect, start, along**2 / power / total, -along / power)
 
