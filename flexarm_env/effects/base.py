@@ -57,6 +57,7 @@ class Effect:
         reads: the signals that its sensor port changes, those of them that the arm has; "strain" for every strain gage.
         per_sensor: whether each parameter belongs to the signal of its name, and is none where the arm does not measure that.
         scan_phase: the parameter that shifts its sine, of which the screening tries a value and that half a turn on; "" for none.
+        most_elements: finite elements of a beam beyond which it is no candidate.
         modifies: the effect that it changes and without which it is no candidate, "" for none.
         needs: what the arm must have: "beam", "motor_inertia", "hub_inertia" (or a beam), names of signals, "strain" for any
             strain gage, or its input, "current" or "voltage".
@@ -74,6 +75,7 @@ class Effect:
     reads: ClassVar[tuple[str, ...]] = ()
     per_sensor: ClassVar[bool] = False
     scan_phase: ClassVar[str] = ""
+    most_elements: ClassVar[float] = math.inf
     modifies: ClassVar[str] = ""
     needs: ClassVar[tuple[str, ...]] = ()
     fitted: ClassVar[bool] = True

@@ -98,8 +98,8 @@ def _base(problem: Problem, found: Refit) -> Base:
 
 def candidates(arm: Arm) -> list[str]:
     """Return the effects that an arm could lack."""
-    fine = arm.constants.get("beam", {}).get("elements", 0.0) >= 3
-    lacking = [n for n in arm.known if n not in arm.effects and arm.can_have(n) and not (n == "higher_modes" and fine)]
+    elements = arm.constants.get("beam", {}).get("elements", 0.0)
+    lacking = [n for n, e in arm.known.items() if n not in arm.effects and arm.can_have(n) and elements <= e.most_elements]
     return [n for n in lacking if not arm.known[n].modifies or arm.known[n].modifies in arm.effects]
 
 
