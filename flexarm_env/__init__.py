@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from flexarm_env.identify.explain.compare import compare
     from flexarm_env.identify.fit import add, fit
     from flexarm_env.recordings.recording import Recording
+    from flexarm_env.sensors import Sensor
 
 #: Where each public name lives: loaded at first use, so that importing the package stays quick.
 _PLACES = {
@@ -25,6 +26,7 @@ _PLACES = {
     "catalogue": "effects",
     "InputError": "errors",
     "Recording": "recordings.recording",
+    "Sensor": "sensors",
     "add": "identify.fit",
     "compare": "identify.explain.compare",
     "diagnose": "identify.diagnose",
@@ -37,6 +39,7 @@ __all__ = [
     "Effect",
     "InputError",
     "Recording",
+    "Sensor",
     "add",
     "catalogue",
     "compare",

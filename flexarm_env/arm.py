@@ -12,8 +12,8 @@ from flexarm_env.display import Shown
 from flexarm_env.effects import Catalogue, Effect, catalogue
 from flexarm_env.effects.catalogue import LAW_PORTS
 from flexarm_env.errors import InputError, did_you_mean
-from flexarm_env.parameters import SECTIONS, SENSOR, Parameter, sensor_unit
-from flexarm_env.signals import INPUTS
+from flexarm_env.parameters import INPUTS, SECTIONS, Parameter
+from flexarm_env.sensors import Sensor, known_sensors
 
 if TYPE_CHECKING:
     from flexarm_env.linear import LinearArm
@@ -91,18 +91,20 @@ class Arm(Shown):
         return replace(self, effects={**self.effects, name: values})
 
     def _check_needs(self, effect: type[Effect]) -> None:
-        missing = [need for need in effect.needs if not self.has(need)]
+        missing = ["a strain gage" if need == "strain" else need for need in effect.needs if not self.has(need)]
         if missing:
             raise InputError(f"effect '{effect.name}' needs {' and '.join(missing)}, which arm '{self.name}' does not have")
 
     def has(self, need: str) -> bool:
-        """Whether the arm has a beam, a motor or a hub with an inertia of its own, a sensor or an input of that name."""
+        """Whether the arm has a part ("beam", "motor_inertia", "hub_inertia"), a sensor ("strain" for any gage) or an input."""
         if need == "motor_inertia":
             return self.constants["drive"]["motor_inertia"] > 0.0
         if need == "hub_inertia":
             return self.constants["hub"]["inertia"] > 0.0 or "beam" in self.constants
         if need in INPUTS:
             return need == self.input
+        if need == "strain":
+            return any(self.sensor(signal).strain for signal in self.sensors)
         return need in self.constants if need == "beam" else need in self.sensors
 
     def can_have(self, name: str) -> bool:
@@ -119,7 +121,7 @@ class Arm(Shown):
         if section == "effects":
             return self.known[rest[0]].parameters[rest[1]]
         if section == "sensors":
-            return replace(SENSOR[rest[1]], unit=sensor_unit(rest[0], rest[1]))
+            return self.sensor(rest[0]).settings()[rest[1]]
         return SECTIONS[section][rest[0]]
 
     def value(self, path: str) -> float:
@@ -150,9 +152,20 @@ class Arm(Shown):
         """Names of the measured signals, in order."""
         return list(self.sensors)
 
+    @staticmethod
+    def sensor(signal: str) -> type[Sensor]:
+        """Return what is known about the sensor of a signal.
+
+        Raises:
+            InputError: for a signal that does not exist.
+        """
+        if signal not in known_sensors():
+            raise InputError(f"unknown signal '{signal}'{did_you_mean(signal, known_sensors())}")
+        return known_sensors()[signal]
+
     def structure(self) -> Structure:
         """Return the linear part with the effects of the structure port worked in."""
-        from flexarm_env.plant.structure import Sensor, Structure
+        from flexarm_env.plant.structure import Structure
 
         beam = dict(self.constants.get("beam", {}))
         drive = self.constants["drive"]
@@ -165,7 +178,10 @@ class Arm(Shown):
             motor_viscous_share=drive["motor_viscous_share"],
             gear_compliance=1.0 / drive["gear_stiffness"] if drive["gear_stiffness"] > 0.0 else 0.0,
             elements=int(beam.pop("elements", 0)),
-            sensors={signal: Sensor(s["gain"], s["offset"], s["filter"], s["position"]) for signal, s in self.sensors.items()},
+            sensors={
+                signal: self.sensor(signal).channel(s["gain"], s["offset"], s["filter"], s["position"])
+                for signal, s in self.sensors.items()
+            },
             **beam,
         )
         for name, values in self.present():
@@ -191,8 +207,13 @@ class Arm(Shown):
                     varies = effect.varies if port == "friction" else port in ("factor", "presliding", "torque", "weight", "drag")
                     parameters = tuple(values[key] for key in effect.parameters)
                     share = self.constants["drive"][effect.motor_share] if effect.motor_share and not yields else 0.0
-                    active.append(ActiveLaw(self.known.kinds[name, port], port, parameters, varies, share, effect.reads))
+                    active.append(ActiveLaw(self.known.kinds[name, port], port, parameters, varies, share, self._read_by(effect)))
         return active
+
+    def _read_by(self, effect: type[Effect]) -> tuple[str, ...]:
+        """Names of the arm's signals that an effect changes."""
+        gages = "strain" in effect.reads
+        return tuple(s for s in self.sensors if s in effect.reads or (gages and self.sensor(s).strain))
 
     def plant(self, interval: float) -> Plant:
         """Return the compiled plant of this arm, sampled every `interval` seconds."""

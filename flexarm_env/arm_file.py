@@ -11,8 +11,8 @@ from flexarm_env.arm import Arm, check_bounds
 from flexarm_env.effects import Catalogue
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import read_toml, write_whole
-from flexarm_env.parameters import DEFAULTS, SECTIONS, SENSOR, Parameter, sensor_unit
-from flexarm_env.signals import INPUTS, SIGNALS
+from flexarm_env.parameters import DEFAULTS, INPUTS, SECTIONS, Parameter
+from flexarm_env.sensors import known_sensors
 from flexarm_env.units import quantity
 
 TOP = ("name", "description", "fixed", "drive", "hub", "beam", "sensors", "effects", "columns", "fitted", "origin")
@@ -62,7 +62,7 @@ def arm_from_table(table: Mapping[str, Any], name: str, known: Catalogue) -> Arm
         constants["beam"] = _section("beam", _table(table, "beam"))
     elif sum((constants["hub"]["inertia"], constants["drive"]["motor_inertia"])) <= 0.0:
         raise InputError("hub.inertia is 0 and there is no beam: nothing could move")
-    sensors = _sensors(_table(table, "sensors"), constants)
+    sensors = _sensors(_table(table, "sensors"))
     arm = Arm(
         name=str(table.get("name", name)),
         input=kind,
@@ -75,6 +75,7 @@ def arm_from_table(table: Mapping[str, Any], name: str, known: Catalogue) -> Arm
         description=str(table.get("description", "")),
         known=known,
     )
+    _check_needs(arm)
     for effect, given in _table(table, "effects", {}).items():
         parameters = known[effect].parameters
         if not isinstance(given, Mapping):
@@ -142,27 +143,29 @@ def _section(section: str, given: Mapping[str, Any]) -> dict[str, float]:
     return values
 
 
-def _sensors(given: Mapping[str, Any], constants: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:
-    _refuse_unknown("sensors.", given, SIGNALS)
+def _sensors(given: Mapping[str, Any]) -> dict[str, dict[str, float]]:
+    _refuse_unknown("sensors.", given, known_sensors())
     if not given:
         raise InputError("table [sensors] is empty: name at least one signal, as [sensors.arm_angle]")
     sensors = {}
-    for signal in SIGNALS:
-        if signal not in given:
-            continue
-        table = _table(given, signal)
-        _refuse_unknown(f"sensors.{signal}.", table, SENSOR)
-        bends = signal.startswith("strain") or signal == "tip_deflection"
-        if bends and "beam" not in constants:
-            raise InputError(f"sensors.{signal} measures the beam, and the arm has none: add [beam] or leave it out")
-        values = {key: p.typical for key, p in SENSOR.items()}
-        for key, value in table.items():
-            unit = Parameter(sensor_unit(signal, key), SENSOR[key].low, SENSOR[key].high, 0.0)
-            values[key] = _number(f"sensors.{signal}.{key}", value, unit)
-        if bends and values["position"] > constants["beam"]["length"]:
-            raise InputError(f"sensors.{signal}.position lies beyond the beam's end at {constants['beam']['length']:g} m")
+    for signal in (signal for signal in known_sensors() if signal in given):
+        table, settings = _table(given, signal), known_sensors()[signal].settings()
+        _refuse_unknown(f"sensors.{signal}.", table, settings)
+        values = {key: p.typical for key, p in settings.items()}
+        values |= {key: _number(f"sensors.{signal}.{key}", value, settings[key]) for key, value in table.items()}
         sensors[signal] = values
     return sensors
+
+
+def _check_needs(arm: Arm) -> None:
+    for signal, values in arm.sensors.items():
+        missing = [need for need in arm.sensor(signal).needs if not arm.has(need)]
+        if "beam" in missing:
+            raise InputError(f"sensors.{signal} measures the beam, and the arm has none: add [beam] or leave it out")
+        if missing:
+            raise InputError(f"sensors.{signal} needs {' and '.join(missing)}, which the arm does not have: leave it out")
+        if "beam" in arm.constants and values["position"] > arm.constants["beam"]["length"]:
+            raise InputError(f"sensors.{signal}.position lies beyond the beam's end at {arm.constants['beam']['length']:g} m")
 
 
 def write_arm(arm: Arm, path: Path) -> None:
@@ -196,8 +199,9 @@ def arm_text(arm: Arm) -> str:
     for signal, values in arm.sensors.items():
         table = tomlkit.table()
         for key, value in values.items():
-            if SENSOR[key].typical != value:
-                _put(table, key, value, sensor_unit(signal, key))
+            setting = arm.parameter(f"sensors.{signal}.{key}")
+            if setting.typical != value:
+                _put(table, key, value, setting.unit)
         sensors[signal] = table
     document["sensors"] = sensors
     effects = tomlkit.table(is_super_table=True)
@@ -218,6 +222,6 @@ def _put(table: Any, key: str, value: float, unit: str) -> None:
     if key == "elements":
         table[key] = int(value)
     elif unit and math.isfinite(value):
-        table[key] = f"{value!r} {unit}"
+        table[key] = f"{float(value)!r} {unit}"
     else:
         table[key] = float(value)

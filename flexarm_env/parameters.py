@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from flexarm_env.signals import SIGNALS
+#: SI unit of each kind of command.
+INPUTS: dict[str, str] = {"current": "A", "voltage": "V"}
+#: Parts that an effect or a sensor may need of an arm, beside its input.
+NEEDS = ("beam", "motor_inertia", "hub_inertia")
 
 
 @dataclass(frozen=True)
@@ -129,9 +132,9 @@ DEFAULTS: dict[str, dict[str, float]] = {
     "beam": {"tip_mass": 0.0, "tip_inertia": 0.0},
 }
 
-#: What a sensor's table may hold. Offset, noise and resolution are in the signal's own unit.
+#: What a sensor's table may hold. Units and defaults of each signal: `Sensor.settings`.
 SENSOR = {
-    "gain": Parameter("", -1e6, 1e6, 1.0, spread=0.1, meaning="reading per quantity"),
+    "gain": Parameter("", -1e6, 1e6, 1.0, spread=0.0, meaning="reading per quantity"),
     "offset": Parameter("", -1e6, 1e6, 0.0, spread=0.0, meaning="reading at zero"),
     "noise": Parameter("", 0.0, 1e6, 0.0, spread=0.0, meaning="standard deviation of the reading"),
     "resolution": Parameter("", 0.0, 1e6, 0.0, spread=0.0, meaning="step of the reading"),
@@ -140,13 +143,3 @@ SENSOR = {
     "position": Parameter("m", 0.0, 1e2, 0.0, spread=0.0, meaning="of a strain gage along the beam"),
     "per_volt": Parameter("", -1e6, 1e6, 0.0, spread=0.0, meaning="quantity per volt of a recording in volts; 0: not stated"),
 }
-
-
-def sensor_unit(signal: str, key: str) -> str:
-    """Unit of a key in a signal's sensor table."""
-    unit = SIGNALS[signal]
-    if key == "gain":
-        return "V/N/m" if signal.startswith("strain") else ""
-    if key == "per_volt":
-        return f"{unit}/V"
-    return unit if key in ("offset", "noise", "resolution") else SENSOR[key].unit

@@ -14,9 +14,13 @@ if TYPE_CHECKING:
 
 # A whitelist, because pint evaluates what it is given: "V**9**9**9" would not return.
 _TERM = r"[A-Za-zµμΩ°]+(?:_[A-Za-z]+)*(?: *(?:\^|\*\*) *-?\d|[²³])?"
-_UNIT = re.compile(rf"(?:1 */ *)?{_TERM}(?: *[*/·] *{_TERM}| +{_TERM})*")
-# Possessive, so that no text takes time that grows faster than its length.
-_QUANTITY = re.compile(r"([+-]?(?:\d++(?:\.\d*+)?+|\.\d++)(?:[eE][+-]?\d++)?+)\s*+(?:(?=[^\d\s.,:;-])(.*+))?+")
+_GROUP = rf"\({_TERM}(?: *[*/·] *{_TERM}| +{_TERM})*\)(?:(?:\^|\*\*)-?\d|[²³])?"
+_FACTOR = rf"(?:{_TERM}|{_GROUP})"
+_UNIT = re.compile(rf"(?:1 */ *)?{_FACTOR}(?: *[*/·] *{_FACTOR}| +{_FACTOR})*")
+# No digit may follow the number, lest "2 000" be read as 2, but for a unit such as 1/s that stands apart. Possessive, so that no
+# text takes time that grows faster than its length.
+_NUMBER = r"[+-]?(?:\d++(?:\.\d*+)?+|\.\d++)(?:[eE][+-]?\d++)?+"
+_QUANTITY = re.compile(rf"({_NUMBER})(?:(?:\s++(?=1 */)|\s*+(?=[^\d\s.,:;-]))(.*+))?+")
 _LONGEST = 60
 # Without these pint reads Nm as "number metre", a count of yarn, and the others not at all.
 _COMPOUNDS = (

@@ -7,18 +7,23 @@ import math
 import numpy as np
 
 from flexarm_env.plant.plant import Plant
-from flexarm_env.plant.structure import Sensor, Structure
+from flexarm_env.plant.structure import Structure
 from flexarm_env.plant.tables import ActiveLaw
+from flexarm_env.sensors.arm_angle import ArmAngle
+from flexarm_env.sensors.motor_speed import MotorSpeed
+from flexarm_env.sensors.strain_base import StrainBase
+from flexarm_env.sensors.strain_mid import StrainMid
+from flexarm_env.sensors.tip_deflection import TipDeflection
 
 COULOMB = 1.5 * 0.066 + 0.183
 STATIC = 1.5 * 0.09487 + 0.21574
 TORQUE_PER_AMP = 1.5 * 0.33
 SIGNALS = {
-    "arm_angle": Sensor(),
-    "motor_speed": Sensor(),
-    "strain_mid": Sensor(position=0.55),
-    "strain_base": Sensor(),
-    "tip_deflection": Sensor(),
+    "arm_angle": ArmAngle.channel(),
+    "motor_speed": MotorSpeed.channel(),
+    "strain_mid": StrainMid.channel(position=0.55),
+    "strain_base": StrainBase.channel(),
+    "tip_deflection": TipDeflection.channel(),
 }
 
 
@@ -78,7 +83,7 @@ def thesis_plant(elements=1, laws=FRICTION, interval=0.005, **changes):
     constants = {
         "viscous": 1.5**2 * 0.0008 + 0.1,
         "motor_viscous_share": 0.0177,
-        "sensors": SIGNALS if elements else {"arm_angle": Sensor(), "motor_speed": Sensor()},
+        "sensors": SIGNALS if elements else {"arm_angle": ArmAngle.channel(), "motor_speed": MotorSpeed.channel()},
     }
     if elements:
         constants |= {"length": 1.0, "mass_per_length": 0.42381, "bending_stiffness": 68.944e9 * 1.1475e-10}

@@ -24,7 +24,7 @@ HEAVY = {"torch", "stable_baselines3", "sb3_contrib", "plotly", "matplotlib", "p
 # A module imports from its own layer and those above it in this list.
 LAYERS = (
     {"errors"},
-    {"units", "parameters", "signals", "files", "display"},
+    {"units", "parameters", "files", "display"},
     {"arm", "arm_file", "plant", "effects", "sensors", "linear", "recordings"},
     {"experiments"},
     {"identify", "controllers", "tasks", "render", "env"},

@@ -13,10 +13,11 @@ from gymnasium.error import ClosedEnvironmentError, DependencyNotInstalled
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
-from flexarm_env.plant.structure import Sensor, Structure, assemble
+from flexarm_env.plant.structure import Structure, assemble
 from flexarm_env.render import Renderer, Scene, beam_shape
 from flexarm_env.render.canvas import number
 from flexarm_env.render.style import BEAM, GAGE, HUB_AT, INK, PANEL, REACH, SIZE, STUCK, TABLE, TARGET
+from flexarm_env.sensors.arm_angle import ArmAngle
 
 # PYGAME_HIDE_SUPPORT_PROMPT is what the renderer sets itself before its own import.
 os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
@@ -228,7 +229,7 @@ def test_the_shape_is_that_of_the_closed_form(elements, more):
 
 
 def test_a_rigid_arm_stays_straight():
-    shape = beam_shape(structure(0, sensors={"arm_angle": Sensor(filter=0.01)}), STATIONS)
+    shape = beam_shape(structure(0, sensors={"arm_angle": ArmAngle.channel(filter=0.01)}), STATIONS)
     np.testing.assert_array_equal(shape, np.zeros((len(STATIONS), 3)))
 
 

@@ -24,6 +24,10 @@ from flexarm_env.errors import InputError
         ("3 Nm", "N*m/rad", 3.0),
         ("0.02 Nms/rad", "N*m*s/rad", 0.02),
         ("12 m/s²", "m/s**2", 12.0),
+        ("9.0 1/rad", "1/rad", 9.0),
+        ("3 1/ms", "1/s", 3000.0),
+        ("0.02 rad/(N m)", "rad/N/m", 0.02),
+        ("2 N*m/(rad/s)^2", "N*m*s**2/rad**2", 2.0),
     ],
 )
 def test_quantities(value: str | float, target: str, expected: float) -> None:
@@ -47,6 +51,13 @@ def test_making_the_registry_warns_of_nothing(caplog):
         ("5 V/Hz", "V*s/rad"),
         ("20 degC", "K"),
         ("3 kg kg", "kg"),
+        ("2 000", "kg"),
+        ("2 000 kg", "kg"),
+        ("9.01/rad", "1/rad"),
+        ("1 (m**9)**9**9", "m"),
+        ("1" + 200_000 * " " + ".", "kg"),
+        ("1 k" + 200_000 * " " + "g", "kg"),
+        (200_000 * "1" + ":", "kg"),
     ],
 )
 def test_quantities_that_are_refused(value: str, target: str) -> None:

@@ -19,6 +19,8 @@ Floats = NDArray[np.float64]
 
 #: Below these sizes a feature is nearly linear, above it grows with the logarithm: a policy has to see 0.1° and 100°.
 FINE = {"arm_angle": 0.01, "motor_speed": 0.1, "strain_mid": 0.02, "strain_base": 0.02, "tip_deflection": 0.001}
+#: The same of another signal, over its typical reading.
+FINE_SHARE = 0.01
 FINE_STATE = {"hub": 0.003, "hub_rate": 0.03, "tip": 0.001, "tip_rate": 0.01, "friction": 0.1}
 #: Features are divided by this, so that most are within ±2.
 SPREAD = 3.0
@@ -53,7 +55,7 @@ class PolicyInterface:
         #: What an average takes over of each new reading (averages, 1, 1).
         self.fresh = 1.0 - np.exp(-interval / np.array(options.averages).reshape(-1, 1, 1))
         self.depth = max([*options.lags, *options.command_lags], default=0) + 1
-        self.fine = np.array([FINE[signal] for signal in self.signals])
+        self.fine = np.array([FINE.get(signal, FINE_SHARE * arm.sensor(signal).typical) for signal in self.signals])
         self.angle = self.signals.index("arm_angle")
         self.start(1)
         self.size = self.features().shape[1]

@@ -54,7 +54,7 @@ def simulate(
         made = flexarm_env.simulate(arm, played, *settings)
     made.write(save)
     reach = {signal: [float(values.min()), float(values.max())] for signal, values in made.signals.items()}
-    rows = [[words.LABELS[s][0], *map(words.number, ends), words.LABELS[s][1]] for s, ends in reach.items()]
+    rows = [[words.label_of(s), *map(words.number, ends), words.unit_of(s)] for s, ends in reach.items()]
     count = f"{len(made)} samples, {made.duration:g} s at {1.0 / made.sample_time:.4g} Hz"
     parts: list[RenderableType] = [
         Text(f"{count}, from arm '{arm.name}'."),

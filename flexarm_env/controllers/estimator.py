@@ -50,7 +50,7 @@ class Estimator:
         self.offset = self.model.offset + self.model.direct[:, 1] * torque
         self.output = np.hstack([self.model.output, self.model.direct[:, 1:]])
         noise = [max(np.hypot(s["noise"], s["resolution"] / 12**0.5), LEAST_NOISE) for s in arm.sensors.values()]
-        extra = [STRAIN_LEFT_OUT * signal.startswith("strain") for signal in arm.sensors]
+        extra = [STRAIN_LEFT_OUT * arm.sensor(signal).strain for signal in arm.sensors]
         self.gain = _gain(self.transition, self.output, self._process(interval), np.hypot(noise, extra), arm.name)
         self._angle = self.model.signals.index("arm_angle")
 

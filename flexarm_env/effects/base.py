@@ -54,10 +54,14 @@ class Effect:
         source: paper or textbook.
         varies: whether its friction changes while the hub turns one way.
         motor_share: the constant of the drive that says which part of its friction acts on the motor; "" for none.
-        reads: the signals that its sensor port changes, those of them that the arm has.
+        reads: the signals that its sensor port changes, those of them that the arm has; "strain" for every strain gage.
+        per_sensor: whether each parameter belongs to the signal of its name, and is none where the arm does not measure that.
+        scan_phase: the parameter that shifts its sine, of which the screening tries a value and that half a turn on; "" for none.
+        most_elements: finite elements of a beam beyond which it is no candidate.
+        condition: the condition of a recording, as in "# payload = 0.3 kg", that is added to its size; "" for none.
         modifies: the effect that it changes and without which it is no candidate, "" for none.
-        needs: what the arm must have: "beam", "motor_inertia", "hub_inertia" (or a beam), names of signals, or its input,
-            "current" or "voltage".
+        needs: what the arm must have: "beam", "motor_inertia", "hub_inertia" (or a beam), names of signals, "strain" for any
+            strain gage, or its input, "current" or "voltage".
         fitted: whether its parameters can be fitted (a count cannot).
     """
 
@@ -70,6 +74,10 @@ class Effect:
     varies: ClassVar[bool] = False
     motor_share: ClassVar[str] = ""
     reads: ClassVar[tuple[str, ...]] = ()
+    per_sensor: ClassVar[bool] = False
+    scan_phase: ClassVar[str] = ""
+    most_elements: ClassVar[float] = math.inf
+    condition: ClassVar[str] = ""
     modifies: ClassVar[str] = ""
     needs: ClassVar[tuple[str, ...]] = ()
     fitted: ClassVar[bool] = True

@@ -44,6 +44,7 @@ def checked(effect: type[Effect]) -> type[Effect]:
 def _check_port(where: str, function: Callable[..., float], allowed: tuple[str, ...]) -> None:
     if not inspect.isfunction(function) or function.__name__ == "<lambda>":
         raise InputError(f"{where} is no function of its own; write it with @staticmethod and def")
-    for name in inspect.signature(function).parameters:
-        if name not in allowed:
+    for name, taken in inspect.signature(function).parameters.items():
+        every = taken.kind is taken.VAR_KEYWORD and "structure" in allowed  # that port is not compiled
+        if name not in allowed and not every:
             raise InputError(f"{where} takes '{name}'{did_you_mean(name, allowed)}")

@@ -21,6 +21,7 @@ class Cogging(Effect):
     }
     looks_like = "missing torque repeats with the angle, the same for both directions; rest angles bunch"
     confused_with = ("position_friction", "cable_stiffness")
+    scan_phase = "phase"
     source = "Hanselman, Brushless Permanent Magnet Motor Design, chapter 7"
 
     @staticmethod

@@ -22,6 +22,7 @@ class HigherModes(Effect):
     source = "thesis section 3.1; notes on the frequencies of one element"
     needs = ("beam",)
     fitted = False
+    most_elements = 2
 
     @staticmethod
     def structure(structure: Structure, elements: float) -> None:

@@ -19,6 +19,7 @@ class Payload(Effect):
     confused_with = ("tip_inertia", "root_compliance")
     source = "thesis eqs. 3.14 and 3.32"
     needs = ("beam",)
+    condition = "payload"
 
     @staticmethod
     def structure(structure: Structure, mass: float) -> None:

@@ -22,6 +22,7 @@ class PositionFriction(Effect):
     modifies = "coulomb"
     looks_like = "missing torque opposes motion and repeats with the angle, with opposite sign for the two directions"
     confused_with = ("cogging", "coulomb")
+    scan_phase = "phase"
     source = "Armstrong, Control of Machines with Friction (1991), chapter 3"
     varies = True
 

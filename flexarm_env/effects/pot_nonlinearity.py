@@ -21,6 +21,7 @@ class PotNonlinearity(Effect):
     }
     looks_like = "angle alone has an error that is periodic in the angle; speed and strain fit"
     confused_with = ("sensor_offset",)
+    scan_phase = "phase"
     needs = ("arm_angle",)
     reads = ("arm_angle",)
 

@@ -18,8 +18,8 @@ class StrainDrift(Effect):
     }
     looks_like = "the error of both strain signals is a straight line in time; angle and speed fit"
     confused_with = ("sensor_offset",)
-    needs = ("strain_mid",)
-    reads = ("strain_mid", "strain_base")
+    needs = ("strain",)
+    reads = ("strain",)
 
     @staticmethod
     def sensor(reading, time, rate):

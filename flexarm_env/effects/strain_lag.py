@@ -17,11 +17,11 @@ class StrainLag(Effect):
     parameters: ClassVar = {"time": Parameter("s", 0.0, 1.0, 0.01, null=0.0, meaning="t_f, time constant")}
     looks_like = "both strain signals lag and lack their fast part; angle and speed fit"
     confused_with = ("beam_damping",)
-    needs = ("strain_mid",)
+    needs = ("strain",)
 
     @staticmethod
     def structure(structure: Structure, time: float) -> None:
         """Add to the filters of the strain gages."""
-        for signal, sensor in structure.sensors.items():
-            if signal.startswith("strain"):
-                sensor.filter += time
+        for channel in structure.sensors.values():
+            if channel.strain:
+                channel.filter += time

@@ -20,6 +20,7 @@ class TachRipple(Effect):
     }
     looks_like = "speed alone is off by a share that repeats with the motor's turns; angle and strain fit"
     confused_with = ("tach_filter",)
+    scan_phase = "phase"
     needs = ("motor_speed",)
     reads = ("motor_speed",)
 

@@ -13,15 +13,13 @@ from flexarm_env.env import kernel as at
 from flexarm_env.env.variation import Disturbance, Variation
 from flexarm_env.errors import InputError
 from flexarm_env.plant.plant import Plant
+from flexarm_env.sensors import Sensor, known_sensors
+from flexarm_env.sensors.arm_angle import ArmAngle
 from flexarm_env.tasks import REWARD_TERMS, Task
 
 Floats = NDArray[np.float64]
 
 THESIS_GEAR_RATIO = 1.5
-#: For the thesis's arm, readings end here: the range of the rig's converters and of its pot.
-LARGEST = {"arm_angle": 4.0 * math.pi, "motor_speed": 200.0, "strain_mid": 10.0, "strain_base": 10.0, "tip_deflection": 2.0}
-#: What normalised observations are divided by.
-SCALES = {"arm_angle": math.pi, "motor_speed": 5.0, "strain_mid": 2.0, "strain_base": 2.0, "tip_deflection": 0.2}
 MOST_RATE = 10_000.0
 
 
@@ -35,7 +33,7 @@ class Setup:
         variation: what is drawn anew for each episode.
         disturbance: taps and drop-outs.
         rate: control steps per second [Hz].
-        physical: whether observations are in physical units; else over SCALES.
+        physical: whether observations are in physical units; else over typical readings.
     """
 
     task: Task
@@ -62,7 +60,7 @@ class Setup:
         """Return what readings and target are divided by (signals + 1,)."""
         if self.physical:
             return np.ones(len(self.arm.sensors) + 1)
-        return np.array([*(SCALES[s] * self._gearing(s) for s in self.arm.sensors), SCALES["arm_angle"]])
+        return np.array([*(sensor.typical * self._gearing(sensor) for sensor in self._sensors), ArmAngle.typical])
 
     def bounds(self) -> Floats:
         """Return the largest observation of each reading and of the target (signals + 1,)."""
@@ -70,11 +68,15 @@ class Setup:
 
     def largest(self) -> Floats:
         """Return where readings and target end (signals + 1,), SI units."""
-        return np.array([*(LARGEST[s] * self._gearing(s) for s in self.arm.sensors), LARGEST["arm_angle"]])
+        return np.array([*(sensor.range_end() * self._gearing(sensor) for sensor in self._sensors), ArmAngle.range_end()])
 
-    def _gearing(self, signal: str) -> float:
+    @property
+    def _sensors(self) -> list[type[Sensor]]:
+        return [known_sensors()[signal] for signal in self.arm.sensors]
+
+    def _gearing(self, sensor: type[Sensor]) -> float:
         """How much faster the motor turns than that of the thesis's arm, where that is what is measured."""
-        return self.arm.constants["drive"]["gear_ratio"] / THESIS_GEAR_RATIO if signal == "motor_speed" else 1.0
+        return self.arm.constants["drive"]["gear_ratio"] / THESIS_GEAR_RATIO if sensor.motor_side else 1.0
 
 
 def check_layouts(setup: Setup, plant: Plant) -> None:

@@ -12,6 +12,7 @@ from flexarm_env.env import kernel as at
 from flexarm_env.env.batch import Batch
 from flexarm_env.env.setup import Setup
 from flexarm_env.render import Renderer, Scene, beam_shape
+from flexarm_env.sensors import known_sensors
 
 STATIONS = 41
 TRACE_TIME = 3.0  # [s]
@@ -32,7 +33,7 @@ class View:
         self.length = structure.length or 1.0
         self.stations = np.linspace(0.0, self.length, STATIONS)
         self.shape = beam_shape(structure, self.stations)
-        gages = {name: s["position"] for name, s in setup.arm.sensors.items() if name.startswith("strain")}
+        gages = {name: s["position"] for name, s in setup.arm.sensors.items() if known_sensors()[name].strain}
         self.renderer = Renderer(mode, self.length, fps, tuple(gages.values()))
         self.signals = list(setup.arm.sensors)
         self.bent = next((s for s in ("strain_base", "tip_deflection", "strain_mid") if s in self.signals), None)

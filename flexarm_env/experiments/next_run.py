@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 from flexarm_env.experiments.simulate import simulate
+from flexarm_env.parameters import INPUTS
 from flexarm_env.recordings.recording import Recording
-from flexarm_env.signals import INPUTS
 
 Floats = NDArray[np.float64]
 

@@ -9,10 +9,13 @@ from flexarm_env.errors import InputError
 from flexarm_env.plant.plant import Plant
 from flexarm_env.recordings.recording import Recording
 
+#: The condition of a recording that states a mass at the tip.
+CONDITION = "payload"
+
 
 def stated_payload(recording: Recording) -> float:
     """Read the payload that a recording states [kg], 0 if none."""
-    return recording.conditions.get("payload", 0.0)
+    return recording.conditions.get(CONDITION, 0.0)
 
 
 def check_payload(arm: Arm, recording: Recording) -> None:
@@ -33,8 +36,9 @@ def with_payload(arm: Arm, payload: float) -> Arm:
     """Add a payload [kg] at the tip, beside a tip mass and a payload of the arm's own."""
     if payload == 0.0:
         return arm
-    own = arm.effects["payload"]["mass"] if "payload" in arm.effects else 0.0
-    return arm.with_effect("payload", mass=own + payload)
+    effect = next(effect for effect in arm.known.values() if effect.condition == CONDITION)
+    own = arm.effects.get(effect.name, {}).get(effect.size(), 0.0)
+    return arm.with_effect(effect.name, **{effect.size(): own + payload})
 
 
 def plants_by_payload(arm: Arm, payloads: Iterable[float], interval: float) -> dict[float, Plant]:

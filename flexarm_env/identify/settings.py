@@ -105,7 +105,6 @@ class ReferenceSizes:
     angle: float = tuned(2.5, "Range of the hub's angle.", "recordings of the arm `thesis`", "rad")
     speed: float = tuned(0.8, "Range of the angle over the root of the time.", "recordings of the arm `thesis`", "rad/s**0.5")
     command: float = tuned(5.0, "Largest command.", "recordings of the arm `thesis`", "A")
-    strain: float = tuned(9.0, "Range of a strain gage.", "recordings of the arm `thesis`", "V")
     inertia: float = tuned(0.147, "Inertia at the hub, motor included.", "arm `thesis`, Table A.1", "kg*m**2")
     least_ratio: float = tuned(1e-9, "Smallest ratio of a size to its reference.", "guards a division")
     least_speed: float = tuned(1e-12, "Smallest speed scale of recordings.", "guards a division", "rad/s**0.5")
@@ -254,7 +253,6 @@ class Screening:
     largest_factor: float = tuned(10.0, "Largest factor taken from a secant.")
     iterations: int = tuned(4, "Jacobians of a candidate's own parameters.")
     tolerance: float = tuned(1e-3, "Relative decrease of the cost at which a candidate's fit ends.")
-    fine_beam: int = tuned(3, "Elements from which a beam lacks no higher modes.", unit="elements")
 
 
 @dataclass(frozen=True)

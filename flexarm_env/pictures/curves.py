@@ -100,7 +100,7 @@ def loop(before: Comparison, after: Comparison, diagnosis: Diagnosis) -> Figure:
     bottom = figure.add_subplot(grid[1, 0], sharex=top)
     recording, signal, start = most_informative_window(before, after)
     old, new = replay_of(before, recording), replay_of(after, recording)
-    name = words.LABELS[signal][0]
+    name = words.label_of(signal)
     _curves(top, old, new, signal, ("model as given", f"with {' and '.join(diagnosis.effects) or 'new constants'}"))
     _residuals(bottom, old, new, signal, before.noise[signal])
     top.set_title(f"1  Where it fails: {name}, recording “{recording}”")
@@ -118,7 +118,7 @@ def loop(before: Comparison, after: Comparison, diagnosis: Diagnosis) -> Figure:
 
 
 def _curves(axes: Axes, old: Replay, new: Replay, signal: str, names: tuple[str, str]) -> None:
-    label, unit = words.LABELS[signal]
+    label, unit = words.label_of(signal), words.unit_of(signal)
     axes.plot(old.time, old.measured[signal], color=MEASURED, lw=2.6, label="measured")
     axes.plot(old.time, old.windows[signal], color=BEFORE, lw=1.1, ls=(0, (4, 1.2)), label=names[0])
     axes.plot(new.time, new.windows[signal], color=AFTER, lw=1.1, label=names[1])

@@ -73,7 +73,7 @@ def contribution(without: Comparison, after: Comparison) -> tuple[go.Figure, str
         figure.add_trace(curve(old.time[inside], values[inside], step, line=line, name=name))
     figure.update_xaxes(title_text="time [s]")
     figure.update_yaxes(title_text=title(signal))
-    return with_layout(figure, 330, "x unified", **legend()), f"{words.LABELS[signal][0]}, recording {recording}"
+    return with_layout(figure, 330, "x unified", **legend()), f"{words.label_of(signal)}, recording {recording}"
 
 
 def next_input(run: NextRun) -> go.Figure:

@@ -46,7 +46,7 @@ def _(recording: Recording) -> str:
     unit = "A" if recording.input_kind == "current" else "V"
     rows = [[recording.input_kind, *_reach(recording.command), unit]]
     for signal in words.signals_of(list(recording.signals)):
-        label, unit = words.LABELS[signal]
+        label, unit = words.label_of(signal), words.unit_of(signal)
         rows.append([label, *_reach(recording.signals[signal]), unit])
     gaps = f", {words.counted(len(recording.gaps), 'gap')}" if recording.gaps else ""
     rate = f"{recording.duration:.4g} s at {1.0 / recording.sample_time:.4g} Hz"
@@ -62,7 +62,7 @@ def _reach(values: np.ndarray) -> list[str]:
 def _(result: Comparison) -> str:
     rows = [
         [
-            words.LABELS[r.signal][0] if r.signal in words.LABELS else "all",
+            words.label_of(r.signal),
             r.part,
             words.number(r.error),
             words.number(r.free_run),

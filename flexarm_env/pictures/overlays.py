@@ -20,14 +20,14 @@ AS_GIVEN, CORRECTED = "model as given", "corrected"
 
 def title(signal: str) -> str:
     """Format name and unit of a signal: "arm angle [rad]"."""
-    label, unit = words.LABELS[signal]
+    label, unit = words.label_of(signal), words.unit_of(signal)
     return f"{label} [{unit}]"
 
 
 def signals(old: Replay, new: Replay | None, noise: dict[str, float]) -> go.Figure:
     """Draw measured and modelled signals of a recording, each with its residual, in windows or as one free run."""
     names = words.signals_of(list(old.measured))
-    titles = [text for s in names for text in (title(s), f"{words.LABELS[s][0]}, residual [σ of noise]")]
+    titles = [text for s in names for text in (title(s), f"{words.label_of(s)}, residual [σ of noise]")]
     heights = [part for _ in names for part in (2.2, 1.0)]
     height = 130 + 330 * len(names)
     gap = 34.0 / (height - 130)
@@ -89,7 +89,7 @@ def informative_window(before: Comparison, after: Comparison | None) -> tuple[go
         figure.add_trace(curve(old.time[inside], values[inside], step, name=name, line=line))
     figure.update_xaxes(title_text="time [s]")
     figure.update_yaxes(title_text=title(signal))
-    return with_layout(figure, 300, "x unified", **legend()), f"{words.LABELS[signal][0]}, recording {recording}"
+    return with_layout(figure, 300, "x unified", **legend()), f"{words.label_of(signal)}, recording {recording}"
 
 
 def recorded(recording: Recording) -> go.Figure:

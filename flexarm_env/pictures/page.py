@@ -68,7 +68,7 @@ def _glance(found: Findings) -> str:
     else:
         signal = worst_signals(found.before)[0]
         spectrum = residuals.spectrum(found.before, None, signal)
-        shown.append(figure(spectrum, "glance-spectrum", "At which frequency", f"{words.LABELS[signal][0]}; 1 is noise."))
+        shown.append(figure(spectrum, "glance-spectrum", "At which frequency", f"{words.label_of(signal)}; 1 is noise."))
     return panels(shown)
 
 
@@ -164,7 +164,7 @@ def _errors(before: Comparison, after: Comparison | None) -> str:
     later = {(r.recording, r.signal, r.part): r for r in after.rows} if after is not None else {}
     cells = []
     for r in rows:
-        name = words.LABELS[r.signal][0] if r.signal in words.LABELS else "all signals"
+        name = words.label_of(r.signal)
         line = [name, "all" if r.part == "all" else r.part, words.number(r.error), words.number(r.free_run)]
         new = later.get((r.recording, r.signal, r.part))
         cells.append(line + ([words.number(new.error), words.number(new.free_run)] if new else []))
@@ -178,7 +178,7 @@ def _residuals(found: Findings) -> str:
     drivers = residuals.drivers(found.before, found.recordings)
     out = []
     for place, signal in enumerate(worst_signals(found.before)):
-        label = words.LABELS[signal][0]
+        label = words.label_of(signal)
         shown = []
         for driver in drivers:
             drawn = residuals.versus_driver(driver, found.before, found.after, signal)

@@ -8,15 +8,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from flexarm_env.arm import short_name
 from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.results import Addition, Candidate, Comparison, Diagnosis
+from flexarm_env.sensors import known_sensors
 
-#: Label and unit of each signal.
-LABELS = {
-    "arm_angle": ("arm angle", "rad"),
-    "motor_speed": ("motor speed", "rad/s"),
-    "strain_mid": ("strain, middle", "V"),
-    "strain_base": ("strain, base", "V"),
-    "tip_deflection": ("tip deflection", "m"),
-}
 NOTHING = "–"
 _BARS = "▁▂▃▄▅▆▇█"
 _EIGHTHS = " ▏▎▍▌▋▊▉"
@@ -97,7 +90,17 @@ def bar(share: float, width: int = 12) -> str:
 
 def signals_of(rows: Sequence[str]) -> list[str]:
     """Select the signals among names, in their usual order."""
-    return [name for name in LABELS if name in rows]
+    return [name for name in known_sensors() if name in rows]
+
+
+def label_of(signal: str) -> str:
+    """Look up the label of a signal; "all signals" for none."""
+    return known_sensors()[signal].label if signal in known_sensors() else "all signals"
+
+
+def unit_of(signal: str) -> str:
+    """Format a signal's unit for print."""
+    return plain_unit(known_sensors()[signal].unit)
 
 
 def steps_of(error: Mapping[str, float], effects: Sequence[str] = ()) -> list[tuple[str, float]]:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
+from flexarm_env.errors import InputError
 from flexarm_env.plant.beam import Beam, Matrix, spread_out, turned
+from flexarm_env.plant.reading import Channel, Coordinates, Reading, time_constant
 
 #: What drives the linear part: the command, dry friction and non-linear torque on hub and motor, the constant 1,
 #: the side on which the gears touch (−1, 0, 1), and the angles of a held hub and a held motor.
@@ -28,16 +30,6 @@ LEAST_ROOT_SHARE = 1e-3
 def exceeds(quantity: float | Matrix, limit: float) -> bool:
     """Whether a quantity of an arm, or of every stacked one, lies above a limit."""
     return bool((quantity > limit).all()) if isinstance(quantity, np.ndarray) else quantity > limit
-
-
-@dataclass
-class Sensor:
-    """One measured signal: reading = gain × quantity + offset, through a first-order filter."""
-
-    gain: float = 1.0
-    offset: float = 0.0
-    filter: float = 0.0
-    position: float = 0.0
 
 
 @dataclass
@@ -67,7 +59,7 @@ class Structure:
     gear_gap: float = 0.0
     current_lag: float = 0.0
     input_delay: float = 0.0
-    sensors: dict[str, Sensor] = field(default_factory=dict)
+    sensors: dict[str, Channel] = field(default_factory=dict)
 
     @property
     def separate_motor(self) -> bool:
@@ -110,8 +102,9 @@ def stacked(structures: Sequence[Structure]) -> Structure:
     first, every = structures[0], [vars(structure) for structure in structures]
     values: dict[str, Any] = {name: np.array([each[name] for each in every]) for name in every[0] if name not in WHOLE}
     for signal in first.sensors:
-        rows = np.array([list(vars(structure.sensors[signal]).values()) for structure in structures])
-        values.setdefault("sensors", {})[signal] = Sensor(*rows.T)
+        channels = [structure.sensors[signal] for structure in structures]
+        rows = np.array([(c.gain, c.offset, c.filter, c.position) for c in channels])
+        values.setdefault("sensors", {})[signal] = Channel(channels[0].reading, channels[0].strain, *rows.T)
     return Structure(elements=first.elements, **values)
 
 
@@ -133,6 +126,7 @@ class LinearModel:
     beam_force: Matrix  # (coordinates, drag points + 1): by drag at each point, by what weighs 1 Nm about the hub without payload
     beam_velocity: Matrix  # (drag points + 1, coordinates): of each point; the last row is empty
     signals: list[str]
+    settled: Matrix  # (extra, 2 coordinates): filters of accelerations from [q, q̇], of an arm whose speed has long been the same
 
 
 def assemble(structure: Structure) -> LinearModel:
@@ -182,7 +176,7 @@ def assemble(structure: Structure) -> LinearModel:
     damping[..., 0, 0] += s.viscous * (1.0 - share)
     stiffness[..., 0, 0] += s.hub_stiffness
     model = _drive(s, names, motor, mass, damping, stiffness)
-    _sensors(s, model, beam, spread, motor)
+    _sensors(s, model, Coordinates(size, motor, s.gear_ratio, beam, spread))
     if beam is not None:
         places, weights = beam.drag_points()
         rows = spread(beam.deflection_rows(places, absolute=True))
@@ -223,6 +217,7 @@ def _drive(s: Structure, names: list[str], motor: int, mass: Matrix, damping: Ma
         beam_force=np.broadcast_to(np.eye(size, 1), (*arms, size, 1)),
         beam_velocity=np.zeros((*arms, 1, size)),
         signals=[],
+        settled=np.zeros((*arms, extra, 2 * size)),
     )
     if lagged:
         model.from_extra[..., motor, 0] = torque_per_amp
@@ -235,42 +230,49 @@ def _drive(s: Structure, names: list[str], motor: int, mass: Matrix, damping: Ma
     return model
 
 
-def _sensors(s: Structure, model: LinearModel, beam: Beam | None, spread: Callable[[Matrix], Matrix], motor: int) -> None:
+def _sensors(s: Structure, model: LinearModel, coordinates: Coordinates) -> None:
     size, arms = len(model.names), model.mass.shape[:-2]
-    filtered = [i for i, sensor in enumerate(s.sensors.values()) if exceeds(sensor.filter, 0.0)]
+    readings = [_reading(signal, channel, coordinates) for signal, channel in s.sensors.items()]
+    filters = [time_constant(reading, channel) for reading, channel in zip(readings, s.sensors.values(), strict=True)]
+    filtered = [i for i, filter in enumerate(filters) if exceeds(filter, 0.0)]
     before = model.extra.shape[-1]
     total = before + len(filtered)
     model.extra = _grown(model.extra, total, total)
     model.from_extra = _grown(model.from_extra, size, total)
     model.extra_from_motion = _grown(model.extra_from_motion, total, 2 * size)
     model.extra_from_input = _grown(model.extra_from_input, total, len(DRIVERS))
+    model.settled = _grown(model.settled, total, 2 * size)
     model.output = np.zeros((*arms, len(s.sensors), 2 * size + total))
     model.output_from_input = np.zeros((*arms, len(s.sensors), len(DRIVERS)))
     model.signals = list(s.sensors)
-    if beam is not None:
-        places = np.zeros((*arms, len(s.sensors)))
-        for i, sensor in enumerate(s.sensors.values()):
-            places[..., i] = sensor.position
-        moments = spread(beam.moment_rows(places))
-    for i, (signal, sensor) in enumerate(s.sensors.items()):
+    for i, (reading, channel) in enumerate(zip(readings, s.sensors.values(), strict=True)):
         row = np.zeros((*arms, 2 * size))
-        if signal == "arm_angle":
-            row[..., 0] = 1.0
-        elif signal == "motor_speed":
-            row[..., size + motor] = s.gear_ratio
-        elif beam is not None and signal == "tip_deflection":
-            row[..., :size] = spread(beam.deflection_rows(beam.length[..., None], absolute=False))[..., 0, :]
-        elif beam is not None:
-            row[..., :size] = moments[..., i, :]
-        row *= np.asarray(sensor.gain)[..., None]
-        model.output_from_input[..., i, ONE] = sensor.offset
-        if i in filtered:
-            place = before + filtered.index(i)
-            model.extra[..., place, place] = -1.0 / sensor.filter
-            model.extra_from_motion[..., place, :] = row / np.asarray(sensor.filter)[..., None]
-            model.output[..., i, 2 * size + place] = 1.0
-        else:
+        if reading.position is not None:
+            row[..., :size] = reading.position
+        if reading.speed is not None:
+            row[..., size:] = reading.speed
+        row *= np.asarray(channel.gain)[..., None]
+        model.output_from_input[..., i, ONE] = channel.offset
+        if i not in filtered:
             model.output[..., i, : 2 * size] = row
+            continue
+        place = before + filtered.index(i)
+        if reading.acceleration is not None:
+            # A filtered acceleration is linear in the state: the speed less the filtered speed, over the time constant.
+            rate = reading.acceleration * (np.asarray(channel.gain) / filters[i])[..., None]
+            row[..., size:] -= rate
+            model.output[..., i, size : 2 * size] = rate
+            model.settled[..., place, :] = row
+        model.extra[..., place, place] = -1.0 / filters[i]
+        model.extra_from_motion[..., place, :] = row / np.asarray(filters[i])[..., None]
+        model.output[..., i, 2 * size + place] = 1.0
+
+
+def _reading(signal: str, channel: Channel, coordinates: Coordinates) -> Reading:
+    try:
+        return channel.reading(replace(coordinates, position=channel.position))
+    except InputError as error:
+        raise InputError(f"sensors.{signal} {error}") from None
 
 
 def _grown(matrix: Matrix, rows: int, columns: int) -> Matrix:

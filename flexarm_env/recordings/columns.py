@@ -13,10 +13,11 @@ from typing import Any
 from flexarm_env import units
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import read_toml
-from flexarm_env.signals import INPUTS, SIGNALS
+from flexarm_env.parameters import INPUTS
+from flexarm_env.sensors import known_sensors
 
-UNITS = {"time": "s", **INPUTS, **SIGNALS, "reference": "rad"}
-CALIBRATED = tuple(name for name in (*SIGNALS, "reference") if UNITS[name] != "V")
+UNITS = {"time": "s", **INPUTS, **{name: sensor.unit for name, sensor in known_sensors().items()}, "reference": "rad"}
+CALIBRATED = tuple(name for name in (*known_sensors(), "reference") if UNITS[name] != "V")
 
 _SETTINGS: dict[str, type] = {"delimiter": str, "header_prefix": str, "skip_rows": int, "decimal": str}
 _PLACES: dict[str, type] = {"column": str, "index": int, "variable": str}
@@ -78,8 +79,8 @@ def check_names(names: Sequence[str], measured: bool = True) -> str:
         raise InputError("has neither 'current [A]' nor 'voltage [V]'; add the input that the arm got")
     if len(inputs) > 1:
         raise InputError("has both current and voltage; keep the one that the drive was commanded with")
-    if measured and not any(name in names for name in SIGNALS):
-        raise InputError(f"has no measured signal; add at least one of {', '.join(SIGNALS)}")
+    if measured and not any(name in names for name in known_sensors()):
+        raise InputError(f"has no measured signal; add at least one of {', '.join(known_sensors())}")
     return inputs[0]
 
 

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from flexarm_env.display import Shown
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import write_whole
+from flexarm_env.parameters import INPUTS
 from flexarm_env.recordings.checks import as_vector, check_conditions, check_samples
 from flexarm_env.recordings.columns import UNITS, ColumnMap, check_calibration, check_names, load_columns, si_factor
 from flexarm_env.recordings.conditions import CONDITIONS
@@ -22,7 +23,7 @@ from flexarm_env.recordings.files import PathLike, files_of, read_bytes
 from flexarm_env.recordings.formats.catalogue import format_of
 from flexarm_env.recordings.messages import file_error
 from flexarm_env.recordings.table import Table
-from flexarm_env.signals import INPUTS, SIGNALS
+from flexarm_env.sensors import known_sensors
 
 Floats = NDArray[np.float64]
 Columns = PathLike | Mapping[str, Any] | ColumnMap
@@ -116,8 +117,8 @@ class Recording(Shown):
         if input_kind not in INPUTS:
             raise InputError(f"{name}: unknown input {input_kind!r}{did_you_mean(input_kind, INPUTS)}")
         for signal in signals:
-            if signal not in SIGNALS:
-                raise InputError(f"{name}: unknown signal {signal!r}{did_you_mean(signal, SIGNALS)}")
+            if signal not in known_sensors():
+                raise InputError(f"{name}: unknown signal {signal!r}{did_you_mean(signal, known_sensors())}")
         columns = {"time": time, input_kind: command, **signals}
         if reference is not None:
             columns["reference"] = reference
@@ -186,7 +187,7 @@ class Recording(Shown):
             InputError: if the file cannot be written.
         """
         columns = {"time": self.time, self.input_kind: self.command}
-        columns |= {name: self.signals[name] for name in SIGNALS if name in self.signals}
+        columns |= {name: self.signals[name] for name in known_sensors() if name in self.signals}
         if self.reference is not None:
             columns["reference"] = self.reference
         remarks = [f"# {name} = {value!r} {CONDITIONS.get(name, '')}".rstrip() for name, value in self.conditions.items()]
@@ -251,7 +252,7 @@ def _recording(
         time=arrays["time"],
         input_kind=kind,
         command=arrays[kind],
-        signals={signal: arrays[signal] for signal in SIGNALS if signal in arrays},
+        signals={signal: arrays[signal] for signal in known_sensors() if signal in arrays},
         reference=arrays.get("reference"),
         conditions=conditions,
     )

@@ -14,7 +14,7 @@ from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.results import Addition, Comparison, Diagnosis, Fit, Row
 from flexarm_env.pictures import words
 from flexarm_env.pictures.highlight import error_by_second
-from flexarm_env.pictures.words import LABELS, NOTHING, PARTS, number
+from flexarm_env.pictures.words import NOTHING, PARTS, label_of, number, unit_of
 from flexarm_env.terminal.outputs import discard_stdout
 
 #: Width of a table that goes to a file or a pipe.
@@ -79,7 +79,7 @@ def comparison(result: Comparison) -> list[RenderableType]:
     lines = _over_time(result)
     by_recording = [[name, *(_error(each.get((name, s))) for s in [*signals, "all"]), lines.get(name, "")] for name in names]
     by_recording.append(["all", *(_error(each.get(("all", s))) for s in [*signals, "all"]), ""])
-    heads = [*(LABELS[s][0] for s in signals), "all"]
+    heads = [*(label_of(s) for s in signals), "all"]
     tables: list[RenderableType] = [
         Text(words.comparison(result), style="bold"),
         table("Error over noise (1 is perfect)", ["signal", "windows of 1 s", "free run", "fit", "noise"], by_signal),
@@ -108,7 +108,7 @@ def _left(made: Table) -> Table:
 
 def _whole(row: Row | None, signal: str, noise: float) -> list[str]:
     """Return the line of a signal over all recordings."""
-    label, unit = LABELS[signal]
+    label, unit = label_of(signal), unit_of(signal)
     errors = [NOTHING] * 3
     if row is not None:
         errors = [number(row.error), number(row.free_run), f"{row.fit:.1f} %" if np.isfinite(row.fit) else NOTHING]

@@ -100,7 +100,7 @@ def test_a_missing_signal_is_said_in_one_line(thesis, name, signal):
 @pytest.mark.parametrize("shipped", ["cu-flexible", "cu-rigid", "emps"])
 def test_other_arms_are_driven_or_refused(name, shipped):
     arm = Arm.load(shipped)
-    gages = any(signal.startswith("strain") for signal in arm.signals)
+    gages = arm.has("strain")
     lacks = None
     if "motor_speed" not in arm.signals:
         lacks = "motor_speed"

@@ -17,15 +17,16 @@ import cloudpickle
 import numba
 import numpy as np
 import pytest
+from flexarm_env.identify.simulate import simulate
 
 from flexarm_env.arm import Arm
 from flexarm_env.effects import Effect, catalogue
 from flexarm_env.effects.base import PORT_ARGUMENTS
 from flexarm_env.effects.catalogue import LAW_PORTS, load_effect
 from flexarm_env.errors import InputError
-from flexarm_env.experiments.simulate import simulate
+from flexarm_env.parameters import INPUTS, NEEDS
 from flexarm_env.plant.compose import compose
-from flexarm_env.signals import INPUTS, SIGNALS
+from flexarm_env.sensors import known_sensors
 from flexarm_env.units import factor
 
 NAMES = list(catalogue())
@@ -58,10 +59,9 @@ GRID = {
 def arm() -> Arm:
     """An arm that has every sensor, so that every effect can be added."""
     thesis = Arm.load("thesis-fem")
-    tip = {**thesis.sensors["arm_angle"], "noise": 1e-3, "resolution": 0.0}
-    made = replace(thesis, sensors={**thesis.sensors, "tip_deflection": tip})
-    assert set(made.sensors) == set(SIGNALS)
-    return made
+    others = {name: sensor for name, sensor in known_sensors().items() if name not in thesis.sensors}
+    defaults = {name: {key: p.typical for key, p in sensor.settings().items()} for name, sensor in others.items()}
+    return replace(thesis, sensors={**thesis.sensors, **{name: values | {"noise": 1e-3} for name, values in defaults.items()}})
 
 
 def sized(effect: type[Effect], share: float) -> dict[str, float]:
@@ -87,8 +87,8 @@ def test_it_says_what_it_is(name):
         assert text
         assert text.strip()
     assert set(effect.confused_with) <= set(NAMES) - {name}
-    assert set(effect.needs) <= {"beam", "motor_inertia", "hub_inertia", *SIGNALS, *INPUTS}
-    assert set(effect.reads) <= set(SIGNALS)
+    assert set(effect.needs) <= {*NEEDS, "strain", *known_sensors(), *INPUTS}
+    assert set(effect.reads) <= {"strain", *known_sensors()}
     assert bool(effect.reads) == (effect.port("sensor") is not None)
 
 
@@ -118,8 +118,9 @@ def test_its_ports_take_its_parameters_and_what_the_port_gives(name):
     assert ports
     for port in ports:
         given = ("structure",) if port == "structure" else PORT_ARGUMENTS[port]
-        wanted = inspect.signature(effect.port(port)).parameters
-        assert set(wanted) <= {*given, *effect.parameters}
+        wanted = inspect.signature(effect.port(port)).parameters.values()
+        every = {p.name for p in wanted if p.kind is p.VAR_KEYWORD and port == "structure"}
+        assert {p.name for p in wanted} - every <= {*given, *effect.parameters}
         assert not set(given) & set(effect.parameters), "a parameter hides what the port gives"
 
 

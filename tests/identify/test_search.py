@@ -61,7 +61,7 @@ def test_an_effect_that_began_too_large_begins_again(monkeypatch):
     nominal = Arm.load("thesis-fem")
     made = nominal.with_effect("backlash", gap=0.0007).with_values({"hub.inertia": 1.2 * nominal.value("hub.inertia")})
     arm, data = prepare(nominal, [simulate(made, "pulse", seed=1, duration=5.0)])
-    monkeypatch.setattr(fits, "candidates", lambda arm, data: ["backlash", "current_lag"])
+    monkeypatch.setattr(fits, "candidates", lambda arm: ["backlash", "current_lag"])
     calibrator = Calibrator(arm, data)
     base = calibrator.constants()
     found = fits.fit_with_all_constants(calibrator, base, [Trial("", base.arm, 0.0, 0.0)], [], Progress())
@@ -131,10 +131,9 @@ def test_the_trace_as_plain_data_tells_each_step_from_the_one_before():
 
 def test_an_effect_that_another_one_modifies_has_no_rivals():
     arm = Arm.load("thesis")
-    _, data = prepare(arm, [simulate(arm, "pulse", seed=1, duration=1.0)])
-    assert "dead_zone" in rivals_of("brush_drop", arm, data)
+    assert "dead_zone" in rivals_of("brush_drop", arm)
     assert "stiction" in arm.effects
-    assert rivals_of("coulomb", arm.without_effect("coulomb"), data) == []
+    assert rivals_of("coulomb", arm.without_effect("coulomb")) == []
 
 
 @pytest.mark.slow

@@ -16,8 +16,9 @@ from recording_files import example, same, save
 
 from flexarm_env.errors import InputError
 from flexarm_env.recordings import table
-from flexarm_env.recordings.columns import SIGNALS, UNITS
+from flexarm_env.recordings.columns import UNITS
 from flexarm_env.recordings.recording import Recording
+from flexarm_env.sensors import known_sensors
 
 
 @pytest.mark.parametrize(
@@ -73,7 +74,7 @@ def recordings(draw: st.DrawFn) -> Recording:
     n = draw(st.integers(2, 12))
     column = arrays(np.float64, n, elements=readings)
     steps = draw(arrays(np.float64, n - 1, elements=st.floats(0.02, 100.0)))
-    names = draw(st.lists(st.sampled_from(list(SIGNALS)), min_size=1, unique=True))
+    names = draw(st.lists(st.sampled_from(list(known_sensors())), min_size=1, unique=True))
     return Recording.from_arrays(
         "drawn",
         np.concatenate([[0.0], np.cumsum(steps)]),
@@ -97,7 +98,8 @@ def test_a_written_recording_comes_back_bit_for_bit(tmp_path: Path, recording: R
 
 
 def test_the_header_is_the_contract(tmp_path: Path) -> None:
-    signals = {name: np.zeros(2) for name in reversed(SIGNALS)}
+    names = ("tip_deflection", "strain_base", "strain_mid", "motor_speed", "arm_angle")
+    signals = {name: np.zeros(2) for name in names}
     recording = example(2, signals=signals, reference=np.zeros(2), conditions={"payload": 0.3})
     recording.write(tmp_path / "run.csv")
     lines = (tmp_path / "run.csv").read_text().splitlines()

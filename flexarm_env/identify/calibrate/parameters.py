@@ -18,7 +18,6 @@ Floats = NDArray[np.float64]
 
 #: Constants that split friction between motor and hub, which are one body unless the gears give way.
 SHARES = ("drive.motor_coulomb_share", "drive.motor_stiction_share")
-SENSOR_SPREAD = {"arm_angle": 0.0, "motor_speed": 0.03, "strain_mid": 0.15, "strain_base": 0.15, "tip_deflection": 0.15}
 
 
 @dataclass(frozen=True)
@@ -132,7 +131,7 @@ def _constants(arm: Arm, nominal: Arm) -> Iterator[FitParameter]:
             yield from _with_prior(path, nominal.value(path), arm.parameter(path).spread, arm)
     for signal in arm.sensors:
         path = f"sensors.{signal}.gain"
-        yield from _with_prior(path, nominal.value(path), SENSOR_SPREAD[signal], arm)
+        yield from _with_prior(path, nominal.value(path), arm.parameter(path).spread, arm)
 
 
 def _with_prior(path: str, value: float, spread: float, arm: Arm) -> Sequence[FitParameter]:
@@ -162,8 +161,8 @@ def _effect_parameters(arm: Arm, name: str, dataset: Dataset, nominal: Arm | Non
     effect, numbers = arm.known[name], dataset.settings.parameters
     found = []
     for key, parameter in effect.parameters.items() if effect.fitted else ():
-        if key in ("arm_angle", "motor_speed", "strain_mid", "strain_base", "tip_deflection") and key not in arm.sensors:
-            continue  # an offset of a sensor that the arm does not have
+        if effect.per_sensor and key not in arm.sensors:
+            continue
         if parameter.spread == 0.0:
             continue
         path = f"effects.{name}.{key}"

@@ -52,7 +52,7 @@ def detection_limits(calibrator: Calibrator, found: Calibration) -> dict[str, De
     before = error_measure(found.arm).brief(found.arm, dataset) ** 2
     names = [
         name
-        for name in candidates(found.arm, dataset)
+        for name in candidates(found.arm)
         if known[name].fitted and any(p.null is not None for p in known[name].parameters.values())
     ]
     limits = calibrator.workers.map([(_limit, (base, name, before, dataset)) for name in names])

@@ -16,9 +16,9 @@ from flexarm_env.identify.replay.initial_state import Stretch, find_start
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.replay.scales import scales_of
 from flexarm_env.identify.settings import SETTINGS, Settings
+from flexarm_env.parameters import INPUTS
 from flexarm_env.plant.plant import NO_INTERVALS, Plant
 from flexarm_env.recordings.recording import Recording
-from flexarm_env.signals import INPUTS
 
 Floats = NDArray[np.float64]
 

@@ -10,6 +10,7 @@ from scipy.linalg import eigh
 
 from flexarm_env.identify.settings import FAILED_ERROR, InitialStates
 from flexarm_env.plant.plant import NO_GAINS, NOT_MEASURED, Plant
+from flexarm_env.sensors import known_sensors
 
 Floats = NDArray[np.float64]
 
@@ -44,7 +45,7 @@ def find_start(time: Floats, measured: Floats, signals: list[str], noise: Floats
         settings: thresholds.
     """
     interval = time[1] - time[0]
-    beam = np.array([s.startswith("strain") or s == "tip_deflection" for s in signals])
+    beam = np.array(["beam" in known_sensors()[s].needs for s in signals])
     angle, speed, still = _hub(time, measured, signals, noise, settings)
     moving = speed != 0.0
     held = still * interval >= settings.held_time
@@ -174,7 +175,7 @@ def _hub_directions(plant: Plant) -> Floats:
     size, bodies = len(plant.model.names), plant.bodies
     rows = np.zeros((2, plant.states))
     rows[0, :bodies] = rows[1, size : size + bodies] = 1.0
-    return rows
+    return _with_filters(plant, rows)
 
 
 def _mode_directions(plant: Plant, most: int) -> list[Floats]:
@@ -188,4 +189,11 @@ def _mode_directions(plant: Plant, most: int) -> list[Floats]:
     modes = np.zeros((count, 2, plant.states))
     modes[:, 0, bodies:size] = shapes.T / np.sqrt(squares)[:, None]
     modes[:, 1, size + bodies : 2 * size] = shapes.T
-    return list(modes)
+    return list(_with_filters(plant, modes))
+
+
+def _with_filters(plant: Plant, states: Floats) -> Floats:
+    """Settle the filters of accelerometers in states (…, states), as if the motion had gone on for long."""
+    size = 2 * len(plant.model.names)
+    states[..., size:] += states[..., :size] @ plant.model.settled.T
+    return states

@@ -10,6 +10,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.settings import LEAST_COMMAND, ReferenceSizes
 from flexarm_env.plant.structure import assemble
+from flexarm_env.sensors import known_sensors
 
 
 def torque_scale(arm: Arm, runs: Sequence[Run]) -> float:
@@ -48,9 +49,7 @@ def scales_of(arm: Arm, runs: Sequence[Run], signals: Sequence[str], reference: 
         speed = max(float(max(rates)), reference.least_speed) / reference.speed
     angle = max(angle, reference.least_ratio)
     length, inertia = arm.structure().length or 1.0, _inertia(arm) / reference.inertia
-    gages = [i for i, s in enumerate(signals) if s.startswith("strain")]
-    strain = max((float(np.ptp(run.measured[:, i])) for run in runs for i in gages), default=0.0) / reference.strain or 1.0
-    return {
+    return _signal_scales(runs, signals) | {
         "N*m": torque,
         "N*m*s": torque / speed,
         "N*m/rad": torque / angle,
@@ -58,9 +57,18 @@ def scales_of(arm: Arm, runs: Sequence[Run], signals: Sequence[str], reference: 
         "N*s**2/m**3": torque / speed**2 / length**4,
         "kg": inertia / length**2,
         "kg*m**2": inertia,
-        "V": strain,
-        "V/s": strain,
         "1/rad": 1.0 / angle,
         "rad/s": speed,
         "command": max(max(float(np.abs(run.command).max()) for run in runs) / reference.command, reference.least_ratio),
     }
+
+
+def _signal_scales(runs: Sequence[Run], signals: Sequence[str]) -> dict[str, float]:
+    """Compute the ratio of signals to their usual range, by their unit and for drift by their unit per second."""
+    sizes: dict[str, float] = {}
+    for i, signal in enumerate(signals):
+        sensor = known_sensors()[signal]
+        if sensor.usual_range is not None:
+            size = max(float(np.ptp(run.measured[:, i])) for run in runs) / sensor.usual_range
+            sizes[sensor.unit] = max(sizes.get(sensor.unit, 0.0), size)
+    return {name: size or 1.0 for unit, size in sizes.items() for name in (unit, f"{unit}/s")}

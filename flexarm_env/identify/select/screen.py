@@ -38,7 +38,7 @@ class Trial:
 def screen(calibrator: Calibrator, starts: Sequence[Calibration], progress: Progress) -> list[Trial]:
     """Try every effect from some calibrations, and none; keep the best trial of each, best effect first."""
     bases = baselines(starts, calibrator.dataset)
-    names = candidates(starts[0].arm, calibrator.dataset)
+    names = candidates(starts[0].arm)
     tasks = [(try_effect, (base, name)) for name in names for base in bases]
     trials = [attempt(bases[0], None)]
     for number, found in enumerate(calibrator.workers.map(tasks), start=1):

@@ -132,8 +132,9 @@ def _secant(base: Baseline, effect: str, start: dict[str, float]) -> Signature:
     if power <= base.numbers.least_change * total:
         return Signature(effect, start, 0.0, 0.0)
     along = float(change @ left)
-    if along > 0.0 and "phase" in start:  # the sine turned round
-        start = {**start, "phase": start["phase"] - float(np.copysign(np.pi, start["phase"]))}
+    phase = base.arm.known[effect].scan_phase
+    if along > 0.0 and phase:  # the sine turned round
+        start = {**start, phase: start[phase] - float(np.copysign(np.pi, start[phase]))}
         along = -along
     return Signature(effect, start, along**2 / power / total, -along / power)
 

@@ -9,14 +9,14 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.replay.dataset import Dataset
 
 
-def candidates(arm: Arm, dataset: Dataset) -> list[str]:
+def candidates(arm: Arm) -> list[str]:
     """List the effects that an arm could lack."""
-    fine = arm.constants.get("beam", {}).get("elements", 0.0) >= dataset.settings.screening.fine_beam
-    lacking = [n for n in arm.known if n not in arm.effects and arm.can_have(n) and not (n == "higher_modes" and fine)]
+    elements = arm.constants.get("beam", {}).get("elements", 0.0)
+    lacking = [n for n, e in arm.known.items() if n not in arm.effects and arm.can_have(n) and elements <= e.most_elements]
     return [n for n in lacking if not arm.known[n].modifies or arm.known[n].modifies in arm.effects]
 
 
-def rivals_of(effect: str, without: Arm, dataset: Dataset) -> list[str]:
+def rivals_of(effect: str, without: Arm) -> list[str]:
     """List the effects that an effect is confused with, of those that an arm without it lacks.
 
     There are none for one that another effect of the arm modifies, which could not stand without it.
@@ -24,13 +24,13 @@ def rivals_of(effect: str, without: Arm, dataset: Dataset) -> list[str]:
     known = without.known
     if any(known[n].modifies == effect for n in without.effects):
         return []
-    return [n for n in candidates(without, dataset) if n in known[effect].confused_with or effect in known[n].confused_with]
+    return [n for n in candidates(without) if n in known[effect].confused_with or effect in known[n].confused_with]
 
 
 def starts_of(arm: Arm, effect: str, dataset: Dataset) -> list[dict[str, float]]:
     """List the values from which an effect is tried, in the scales of the data; for offsets, one start for each sensor."""
     known = arm.known[effect]
-    if effect == "sensor_offset":
+    if known.per_sensor:
         noise = dict(zip(dataset.signals, dataset.noise, strict=True))
         sensors = [{key: (float(noise[key]) if key == signal else 0.0) for key in known.parameters} for signal in noise]
         return [start for _ in known.starts() for start in sensors]

@@ -40,7 +40,7 @@ def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now:
         progress: of these calibrations.
     """
     without = now.arm.without_effect(effect)
-    names = rivals_of(effect, without, calibrator.dataset)
+    names = rivals_of(effect, without)
     rivals = [m for m in fit_in_place(calibrator, without, names, progress) if not m.at_bound]
     if not rivals:
         return Comparison(effect, now, {}, frozenset([effect]))

@@ -1,0 +1,77 @@
+"""Arm files: whatever is written can be read, bit for bit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+
+from flexarm_env.arm import Arm
+from flexarm_env.arm_file import shipped_arms
+from flexarm_env.effects import Catalogue, Effect, catalogue
+from flexarm_env.parameters import SENSOR, Parameter
+
+#: Units that a parameter of one's own effect may have, as hard to read back as pint allows.
+UNITS = ("1/rad", "1 / s", "1/rad**2", "rad/(N*m)", "N*m/(rad/s)**2", "(N*m)**0.5", "V/s", "m s^-2", "Ω", "%", "")
+
+
+def bits(tables: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, str]]:
+    return {name: {key: float(value).hex() for key, value in table.items()} for name, table in tables.items()}
+
+
+def read_back(arm: Arm, folder: Path, known: Catalogue | None = None) -> Arm:
+    arm.save(folder / "arm.toml")
+    return Arm.load(folder / "arm.toml", known)
+
+
+@pytest.mark.parametrize("level", ["low", "typical", "high"])
+@pytest.mark.parametrize("name", sorted(shipped_arms()))
+def test_every_effect_is_read_back_bit_for_bit(tmp_path, name, level):
+    arm = Arm.load(name)
+    for effect in filter(arm.can_have, catalogue()):
+        arm = arm.with_effect(effect, **{key: getattr(p, level) for key, p in arm.known[effect].parameters.items()})
+    again = read_back(arm, tmp_path)
+    assert bits(again.effects) == bits(arm.effects)
+    assert bits(again.constants) == bits(arm.constants)
+    assert bits(again.sensors) == bits(arm.sensors)
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_whatever_unit_an_effect_has_is_read_back(tmp_path, unit):
+    class Own(Effect):
+        """An effect of a person's own."""
+
+        name = "own"
+        equation = "τ = a"
+        parameters: ClassVar = {"size": Parameter(unit, -math.inf, math.inf, 0.1, null=0.0)}
+        looks_like = "nothing"
+
+    known = catalogue().extended(Own)
+    for value in (0.1, 1.0, -0.0, 5e-324, 1e300, 1e22, math.inf, -math.inf):
+        arm = Arm.load("thesis", known).with_effect("own", size=value)
+        assert bits(read_back(arm, tmp_path, known).effects) == bits(arm.effects)
+
+
+@pytest.mark.parametrize("name", sorted(shipped_arms()))
+def test_sensors_are_read_back_bit_for_bit(tmp_path, name):
+    arm = Arm.load(name)
+    odd = {f"sensors.{s}.{key}": np.float64(p.typical + 1 / 300) for s in arm.sensors for key, p in SENSOR.items()}
+    arm = arm.with_values(odd)
+    assert bits(read_back(arm, tmp_path).sensors) == bits(arm.sensors)
+
+
+def test_fitted_intervals_and_origin_are_read_back(tmp_path):
+    fitted: dict[str, Any] = {
+        "effects.cogging.cycles": {"value": 9.0, "low": 1 / 3, "high": math.inf, "unit": "1/rad"},
+        "sensors.arm_angle.gain": {"value": 1.01, "low": 1.0, "high": 1.02, "unit": ""},
+    }
+    origin = {"command": 'flexarm add "cogging"', "recordings": ["a.csv", "b.csv"], "seed": 0, "error": 1.02}
+    arm = Arm.load("thesis").with_effect("cogging")
+    arm = Arm(**{**vars(arm), "fitted": fitted, "origin": origin})
+    again = read_back(arm, tmp_path)
+    assert again.fitted == fitted
+    assert again.origin == origin
