@@ -60,8 +60,8 @@ class TrainingReward:
 
     def _strain(self) -> Floats:
         """Return the base strain without noise (arms,) [V]; none where it is not measured."""
-        looks = self.envs.batch.looks
-        return np.zeros(len(looks)) if self.gage is None else looks[:, self.gage].copy()
+        exact = self.envs.batch.exact_readings
+        return np.zeros(len(exact)) if self.gage is None else exact[:, self.gage].copy()
 
 
 def _share(size: Floats, scale: float, whole: float) -> Floats:

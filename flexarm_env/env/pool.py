@@ -9,10 +9,12 @@ The functions stand alone in this file, so that numba's cache, which sees edits 
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
+import numpy as np
 from numba import boolean, float32, float64, int64, njit, types, uint64
 from numba.extending import intrinsic
+from numpy.typing import NDArray
 
 #: Numbers in a line of the processor's cache.
 LINE = 8
@@ -23,9 +25,33 @@ STEP, DONE, AWAKE = 0, LINE, 2 * LINE
 LOOKS = 500_000
 
 FLOATS, PLACES = float64[::1], int64[::1]
-#: What moves arms on (plant.batch.step_batch), and what judges and shows them (env.kernel.after_step).
+#: Types of the kernel that moves arms on (plant.batch.step_batch), and of the one that rewards and observes them
+#: (env.kernel.after_step).
 MOVE = types.FunctionType(types.none(FLOATS, PLACES, PLACES, int64, int64, int64))
-SHOW = types.FunctionType(types.none(FLOATS, PLACES, uint64[::1], float32[:, ::1], int64, int64))
+OBSERVE = types.FunctionType(types.none(FLOATS, PLACES, uint64[::1], float32[:, ::1], int64, int64))
+
+
+class Arms(NamedTuple):
+    """Arrays on which the kernels of a batch of arms work.
+
+    Attributes:
+        arena: all numbers of the arms.
+        layout: of the plant's constants, see plant.layout.
+        physics: the plant's places in the arena, see plant.batch.
+        places: the environment's places in the arena, see env.layout.
+        keys: (arms,) of the episodes.
+        observations: (arms, signals + 1), to be written.
+    """
+
+    arena: NDArray[np.float64]
+    layout: NDArray[np.int64]
+    physics: NDArray[np.int64]
+    places: NDArray[np.int64]
+    keys: NDArray[np.uint64]
+    observations: NDArray[np.float32]
+
+
+ARMS = types.NamedTuple([FLOATS, PLACES, PLACES, PLACES, uint64[::1], float32[:, ::1]], Arms)
 
 
 def _pointer(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -35,7 +61,7 @@ def _pointer(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
 
 @intrinsic
 def look(_, pool, place):
-    """Return pool[place] as other threads last left it."""
+    """Read pool[place] as other threads last left it."""
 
     def generate(context, builder, signature, arguments):
         return builder.load_atomic(_pointer(context, builder, signature, arguments), "seq_cst", 8)
@@ -77,7 +103,7 @@ def replace(_, pool, place, old, new):
 
 @njit((int64(int64)), cache=True)
 def claims(threads):
-    """Return where the shares' claims begin in a pool."""
+    """Locate the shares' claims in a pool."""
     return AWAKE + LINE * threads
 
 
@@ -91,13 +117,13 @@ def begin(pool, first):
 
 @njit(boolean(PLACES, int64), cache=True, nogil=True)
 def was_asleep(pool, part):
-    """Return whether helper `part` has to be woken up, and note that it is."""
+    """Mark helper `part` as awake; return whether it was asleep."""
     return exchange(pool, AWAKE + LINE * part, 1) == 0
 
 
 @njit(int64(PLACES, int64, int64), cache=True, nogil=True)
 def next_share(pool, first, last):
-    """Count one share as done, and claim the first that nobody has of those whose claims are in pool[first:last].
+    """Count one share as done, and claim the first unclaimed one of those whose claims are in pool[first:last].
 
     Return its place there, or -1.
     """
@@ -111,31 +137,23 @@ def next_share(pool, first, last):
 
 @njit(boolean(PLACES, int64), cache=True, nogil=True)
 def finish(pool, shares):
-    """Wait for about 0.1 ms until so many shares are done; return whether they are."""
+    """Wait up to about 0.1 ms until `shares` shares are done; return whether they are."""
     looks = 0
     while look(pool, DONE) < shares and looks < LOOKS:
         looks += 1
     return looks < LOOKS
 
 
-@njit(
-    (MOVE, SHOW, PLACES, PLACES, FLOATS, PLACES, PLACES, PLACES, uint64[::1], float32[:, ::1], int64, int64),
-    cache=True, nogil=True,
-)  # fmt: skip
-def help_out(move, show, pool, bounds, arena, layout, physics, places, keys, observations, threads, part):
-    """Move on what shares nobody has claimed, step after step, until no step follows for a while.
+@njit((MOVE, OBSERVE, ARMS, PLACES, PLACES, int64, int64), cache=True, nogil=True)
+def help_out(move, observe, arms, pool, bounds, threads, part):
+    """Move on the shares that nobody has claimed, step after step, until no step follows for a while.
 
     Args:
         move: moves arms on.
-        show: judges and shows them.
+        observe: rewards and observes them.
+        arms: Arms.
         pool: steps, claims, and who is awake.
         bounds: (shares + 1,): share i is the arms from bounds[i] to bounds[i + 1] - 1.
-        arena: all numbers of the arms.
-        layout: move's.
-        physics: move's places in arena.
-        places: show's places in arena.
-        keys: (arms,) of the episodes.
-        observations: (arms, signals + 1), to be written.
         threads: number of them.
         part: number of this one, from 1 up.
     """
@@ -147,8 +165,8 @@ def help_out(move, show, pool, bounds, arena, layout, physics, places, keys, obs
         for i in range(shares):
             share = (last - i) % shares
             if replace(pool, claims(threads) + share, step - 1, step):
-                move(arena, layout, physics, bounds[share], bounds[share + 1], part)
-                show(arena, places, keys, observations, bounds[share], bounds[share + 1])
+                move(arms.arena, arms.layout, arms.physics, bounds[share], bounds[share + 1], part)
+                observe(arms.arena, arms.places, arms.keys, arms.observations, bounds[share], bounds[share + 1])
                 add(pool, DONE, 1)
         looks = 0
         while look(pool, STEP) == step and looks < LOOKS:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from flexarm_env.env.pool import begin, claims, finish, help_out, next_share, was_asleep
+from flexarm_env.env.pool import Arms, begin, claims, finish, help_out, next_share, was_asleep
 
 #: Share of its part of the arms that the caller takes before it turns to the pool, and shares of the pool per thread.
 OWN_SHARE, SHARES = 0.85, 8
@@ -59,12 +59,12 @@ class Crew:
     Args:
         size: of the crew, the caller counted.
         count: of arms.
-        move: pool.help_out's.
-        show: pool.help_out's.
-        given: what pool.help_out is to work with, from arena to observations.
+        move: moves arms on, see pool.help_out.
+        observe: rewards and observes them.
+        arms: arrays of all arms.
     """
 
-    def __init__(self, size: int, count: int, move: Any, show: Any, given: tuple[Any, ...]) -> None:
+    def __init__(self, size: int, count: int, move: Any, observe: Any, arms: Arms) -> None:
         own = round(OWN_SHARE * count / size)
         share = max((count - own) // (SHARES * size), LEAST_SHARE)
         self.limits = [0, *range(own, count, share), count]
@@ -72,12 +72,12 @@ class Crew:
         self.last = self.first + self.shares
         self.pool = np.zeros(self.last, dtype=np.int64)
         self.helpers = [Helper() for _ in range(size - 1)]
-        common = (move, show, self.pool, np.array(self.limits), *given, size)
+        common = (move, observe, arms, self.pool, np.array(self.limits), size)
         self.jobs = [partial(help_out, *common, part) for part in range(1, size)]
         self.dismiss = weakref.finalize(self, _dismiss, self.helpers)
 
     def run(self, work: Callable[[int, int], None]) -> None:
-        """Move all arms on; `work` does so with those from first to last - 1 in the caller's thread."""
+        """Move all arms on; `work` moves those from first to last - 1 on in the caller's thread."""
         begin(self.pool, self.first)
         for part, (helper, job) in enumerate(zip(self.helpers, self.jobs, strict=True), start=1):
             if was_asleep(self.pool, part):

@@ -35,7 +35,7 @@ def vibration_costs(frequency: float, amplitude: float) -> np.ndarray:
     reward.start(0.0)
     costs = []
     for k in range(1, 401):
-        batch.looks[0, gage] = amplitude * np.sin(2.0 * np.pi * frequency * k / RATE)
+        batch.exact_readings[0, gage] = amplitude * np.sin(2.0 * np.pi * frequency * k / RATE)
         costs.append(-reward.sample()[0])
     return np.array(costs[100:])
 
