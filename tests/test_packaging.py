@@ -23,8 +23,8 @@ HEAVY = {"torch", "stable_baselines3", "sb3_contrib", "plotly", "matplotlib", "p
 # A module imports from its own layer and those above it in this list.
 LAYERS = (
     {"errors"},
-    {"units", "parameters", "signals", "files", "generated", "display", "thesis_drive"},
-    {"arm", "arm_file", "plant", "effects", "sensors", "linear"},
+    {"units", "parameters", "signals", "files", "generated", "display"},
+    {"arm", "arm_file", "plant", "effects", "sensors", "linear", "thesis_drive"},
     {"identify", "controllers", "tasks", "render", "env"},
     {"vector_env", "sb3", "pictures", "registration"},
     {"lab", "cli", "demo", "thesis", "__main__"},

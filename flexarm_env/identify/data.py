@@ -16,6 +16,7 @@ from flexarm_env.identify.recording import Recording
 from flexarm_env.identify.run import Run, cut
 from flexarm_env.identify.scales import scales_of
 from flexarm_env.identify.start import find_start
+from flexarm_env.parameters import reading_noise
 from flexarm_env.plant.plant import NO_INTERVALS, Plant
 from flexarm_env.signals import INPUTS
 
@@ -94,7 +95,7 @@ def _with_sensors(arm: Arm, signals: list[str]) -> Arm:
 
 
 def _noise(arm: Arm, signals: list[str], measured: list[Floats]) -> Floats:
-    stated = [np.hypot(arm.sensors[s]["noise"], arm.sensors[s]["resolution"] / np.sqrt(12.0)) for s in signals]
+    stated = [reading_noise(arm.sensors[s]) for s in signals]
     spread = np.ptp(np.concatenate(measured), axis=0)
     return np.array([n if n > 0.0 else max(DEFAULT_NOISE * w, 1e-12) for n, w in zip(stated, spread, strict=True)])
 

@@ -13,7 +13,8 @@ from flexarm_env.arm_file import arm_from_table
 from flexarm_env.effects import catalogue
 from flexarm_env.errors import InputError
 from flexarm_env.identify.recording import Recording
-from flexarm_env.identify.simulate import DERIVATIVE, PROPORTIONAL, SQUARE_ANGLE, simulate
+from flexarm_env.identify.simulate import SQUARE_ANGLE, simulate
+from flexarm_env.thesis_drive import DERIVATIVE, PROPORTIONAL
 
 EXPERIMENTS = ("pulse", "square", "sweep")
 RIGID = {
