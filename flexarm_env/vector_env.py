@@ -1,4 +1,4 @@
-"""Many arms in one environment, on the kernel of the single one: the same bits, thousands of times a step."""
+"""Many arms in one environment, on the kernel of the single one: the same bits for each arm."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         """Apply the commands actions · limit (arms, 1) for one sample.
 
         Raises:
-            gymnasium.error.ResetNeeded: before the first reset, or for arms whose episode is over and that wait for a reset.
+            gymnasium.error.ResetNeeded: before the first reset, or for arms after the end of their episode that need a reset.
             InputError: for actions of another shape, or that are not numbers.
         """
         before = self.over
@@ -174,7 +174,7 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         return rewards, terminated, truncated
 
     def restart(self) -> None:
-        """Start the next episode of every arm whose episode is over."""
+        """Start the next episode of every arm at the end of one."""
         self.batch.reset(self.every[self.over])
         self.over = np.zeros(self.num_envs, dtype=bool)
 

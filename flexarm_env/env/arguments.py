@@ -38,7 +38,7 @@ class EnvArguments(TypedDict, total=False):
     physical: bool
 
 
-#: Names of all arguments of an environment, whatever it is made of.
+#: Names of the arguments of every environment.
 NAMES = ("task", "arm", *EnvArguments.__annotations__, "render_mode")
 
 

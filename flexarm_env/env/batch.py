@@ -145,7 +145,7 @@ class Batch:
         self.after_step(self.arena, self.places, self.keys, self.observations, first, last)
 
     def request(self, actions: Floats) -> int:
-        """Set the commands of the next step to actions (arms,) · limit; return the first arm whose is no number, or -1."""
+        """Set the commands of the next step to actions (arms,) · limit; return the first arm without a finite action, or -1."""
         return int(self.kernel.request(actions, self.arena, self.places, self.limit))
 
     def info(self) -> dict[str, Floats]:

@@ -1,7 +1,7 @@
 """Random numbers that are hashes of a counter (Steele, Lea, Flood, OOPSLA 2014, SplitMix64).
 
 A draw depends on its key and its place alone, not on how many arms there are or which of them ended when. The functions
-stand alone in this file, so that numba's cache, which sees edits in this file only, is never out of date.
+stand alone in this file, so that numba's cache, which detects edits of this file only, is never out of date.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ LAYER_AREA = 0.00492867323399
 
 
 def _edges():
-    """Return the right edges (LAYERS + 1,) of the layers, from the lowest up."""
+    """Compute the right edges (LAYERS + 1,) of the layers, from the lowest up."""
     density = math.exp(-0.5 * LOWEST_EDGE**2)
     edges = [LAYER_AREA / density, LOWEST_EDGE]
     while len(edges) < LAYERS:
@@ -44,20 +44,20 @@ def mixed(x):
 
 @njit(cache=True)
 def uniform(key, stream, counter):
-    """Return a number in [0, 1) for a key, a stream and a place in it."""
+    """Draw a number in [0, 1) for a key, a stream and a place in it."""
     own = mixed(key + np.uint64(stream) * GOLDEN)
     return float(mixed(own + (np.uint64(counter) + np.uint64(1)) * GOLDEN) >> np.uint64(11)) * 2.0**-53
 
 
 @njit(cache=True)
 def key_of(seed, name, episode):
-    """Return the key of an episode: of an arm's seed, the hash of a name and the episode's number."""
+    """Compute the key of an episode from an arm's seed, the hash of a name and the episode's number."""
     return mixed(mixed(mixed(np.uint64(seed) + GOLDEN) + np.uint64(name)) + np.uint64(episode) * GOLDEN)
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
 def normal(stream, counter):
-    """Return a normal number of variance 1 for a stream's own key and a place in it.
+    """Draw a normal number of variance 1 for a stream's own key and a place in it.
 
     Source: Doornik, An Improved Ziggurat Method to Generate Normal Random Samples, 2005. Where a draw is refused, the
     next one comes from the hash of its bits.
@@ -82,7 +82,7 @@ def normal(stream, counter):
 
 @njit(cache=True)
 def _beyond(bits, share):
-    """Return a number from the tail beyond the lowest layer (Marsaglia 1964)."""
+    """Draw a number from the tail beyond the lowest layer (Marsaglia 1964)."""
     while True:
         bits = mixed(bits + GOLDEN)
         further = -math.log(1.0 - share) / EDGES[1]

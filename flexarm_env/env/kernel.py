@@ -1,7 +1,7 @@
 """A sample of many arms beside their physics: disturbances, sensors, target, reward, end.
 
-`compose` makes one module of this file, those that it calls and the terms of a task's reward, so that what numba caches of
-it is never out of date. The kernels count no references (_nrt), for the reasons given in plant/compose.py.
+`compose` makes one module of this file, those that it calls and the terms of a task's reward, so that its compiled
+code in numba's cache is never out of date. The kernels count no references (_nrt), for the reasons given in plant/compose.py.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def write_reward(a, places, arm):
         a[target] = a[own + FIRST_TARGET] * (1.0 if half % 2 == 0 else -1.0)
     angle, speed, tip, stuck, lost = a[truth], a[truth + 1], a[truth + 2], a[truth + 3] > 0.0, a[truth + 4] > 0.0
     failed = lost or not abs(angle - a[own + FIRST_ANGLE]) <= a[settings + RANGE]
-    if lost:  # what is left of the arm are no numbers: it stands at the end of its range, straight
+    if lost:  # not finite: rewarded like a straight arm at rest at the end of its range
         angle, speed, tip = a[own + FIRST_ANGLE] + a[settings + RANGE], 0.0, 0.0
     moment = Sample(
         hub_angle=angle,

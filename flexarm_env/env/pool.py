@@ -1,10 +1,9 @@
-"""Shares of the arms that threads claim, with nothing of the interpreter between two shares.
+"""Shares of the arms that threads claim, without the interpreter between two shares.
 
-A thread that has to be woken up comes some ten microseconds late, half of what a step of a thousand arms takes. A helper
-therefore watches for the next step for a while, and goes to sleep only if none follows. Who moves which share on is
-settled by atomic instructions: where a helper comes late, the caller does its work. Each begins at its own end, so that
-an arm mostly stays in the cache of one core.
-The functions stand alone in this file, so that numba's cache, which sees edits in this file only, is never out of date.
+Waking a thread takes some ten microseconds, half of the time of a step of a thousand arms. A helper therefore watches for
+the next step for a while, and goes to sleep only if none follows. Threads claim shares by atomic instructions: the caller
+does the work of a late helper. Each thread begins at its own end, so that an arm mostly stays in the cache of one core.
+The functions stand alone in this file, so that numba's cache, which detects edits of this file only, is never out of date.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from numpy.typing import NDArray
 
 #: Numbers in a line of the processor's cache.
 LINE = 8
-# --- places of a pool's numbers: what threads write stands in lines of their own
+# --- places of a pool's numbers: those that different threads write are in different lines
 STEP, DONE, AWAKE = 0, LINE, 2 * LINE
 
 #: How often a helper looks for the next step before it goes to sleep: about 0.1 ms.
@@ -71,7 +70,7 @@ def look(_, pool, place):
 
 @intrinsic
 def add(_, pool, place, value):
-    """Add to pool[place], at once for all threads, and return what it was."""
+    """Add to pool[place], at once for all threads, and return the old value."""
 
     def generate(context, builder, signature, arguments):
         return builder.atomic_rmw("add", _pointer(context, builder, signature, arguments), arguments[2], "seq_cst")
@@ -81,7 +80,7 @@ def add(_, pool, place, value):
 
 @intrinsic
 def exchange(_, pool, place, value):
-    """Set pool[place], at once for all threads, and return what it was."""
+    """Set pool[place], at once for all threads, and return the old value."""
 
     def generate(context, builder, signature, arguments):
         return builder.atomic_rmw("xchg", _pointer(context, builder, signature, arguments), arguments[2], "seq_cst")
@@ -109,7 +108,7 @@ def claims(threads):
 
 @njit((PLACES, int64), cache=True, nogil=True)
 def begin(pool, first):
-    """Begin a step, with the share whose claim is in pool[first] claimed already."""
+    """Begin a step, with the first share, at pool[first], already claimed."""
     exchange(pool, DONE, 0)
     pool[first] += 1
     add(pool, STEP, 1)

@@ -1,4 +1,4 @@
-"""The reward of a task without terms: what `compose` puts a task's own terms in the place of."""
+"""The reward of a task without terms. In a compiled kernel, `compose` puts the task's own terms in its place."""
 
 from __future__ import annotations
 

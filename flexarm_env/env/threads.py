@@ -1,4 +1,4 @@
-"""Threads that share the arms of an environment, with as little between them and their work as Python allows."""
+"""Threads that share the arms of an environment, with the least overhead that Python allows."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ import numpy as np
 
 from flexarm_env.env.pool import Arms, begin, claims, finish, help_out, next_share, was_asleep
 
-#: Share of its part of the arms that the caller takes before it turns to the pool, and shares of the pool per thread.
+#: Part of its share of the arms that the caller moves before it turns to the pool, and shares of the pool per thread.
 OWN_SHARE, SHARES = 0.85, 8
 LEAST_SHARE = 16
 
 
 class Helper:
-    """A thread that helps out when it is called.
+    """A thread that works when it is called.
 
-    It holds no work while it sleeps, so that an environment that is dropped without close() is collected all the same.
+    It holds no work while it sleeps, so that an environment dropped without close() is still collected.
     """
 
     def __init__(self) -> None:
@@ -31,12 +31,12 @@ class Helper:
         threading.Thread(target=self._serve, daemon=True).start()
 
     def call(self, work: Callable[[], None]) -> None:
-        """Wake it up to work."""
+        """Wake the thread to do some work."""
         self.work = work
         self.called.release()
 
     def dismiss(self) -> None:
-        """Let it end."""
+        """End the thread."""
         self.dismissed = True
         self.called.release()
 

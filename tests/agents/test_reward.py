@@ -29,7 +29,7 @@ def vibration_costs(frequency: float, amplitude: float) -> np.ndarray:
     """Rewards of 400 samples in which nothing is wrong but the base strain."""
     arm = Arm.load("thesis")
     nothing = {name: np.zeros(1) for name in ("hub_angle", "tip_deflection", "target")}
-    batch = SimpleNamespace(looks=np.zeros((1, 4)), info=lambda: nothing)
+    batch = SimpleNamespace(exact_readings=np.zeros((1, 4)), info=lambda: nothing)
     envs = SimpleNamespace(batch=batch, num_envs=1, setup=SimpleNamespace(arm=arm, rate=RATE))
     reward, gage = TrainingReward(RewardOptions(), envs), list(arm.signals).index("strain_base")  # type: ignore[arg-type]
     reward.start(0.0)

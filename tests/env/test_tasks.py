@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import doctest
-import importlib
 import math
 import os
 import shutil
@@ -25,7 +24,6 @@ from flexarm_env.tasks import COMMON_TERMS, TASKS, RewardTerm, Task
 from flexarm_env.tasks.catalogue import registered_tasks
 
 HEADINGS = ("Description", "Action Space", "Observation Space", "Rewards", "Starting State", "Episode End", "Arguments")
-TASK_MODULES = ("flexarm_env.tasks.reward", "flexarm_env.tasks.task")
 PROJECT = Path(__file__).resolve().parent.parent.parent
 every_task = pytest.mark.parametrize("task", TASKS.values(), ids=list(TASKS))
 
@@ -175,10 +173,3 @@ def test_bad_names_of_tasks_give_one_clear_line(files: dict, words: str, tmp_pat
     monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(InputError, match=words):
         registered_tasks(package.name, [str(package)])
-
-
-@pytest.mark.parametrize("module", ["flexarm_env.env.flexarm", "flexarm_env.vector_env", "flexarm_env.tasks", *TASK_MODULES])
-def test_the_examples_of_docstrings_run(module: str) -> None:
-    result = doctest.testmod(importlib.import_module(module))
-    assert result.attempted
-    assert result.failed == 0
