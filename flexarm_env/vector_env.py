@@ -78,7 +78,7 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         self.max_episode_steps = max_episode_steps or self.setup.samples
         self.batch = Batch(self.setup, self.num_envs, int(threads))
         #: Names under which an info marks the arms that it is about, see gymnasium.vector.VectorEnv.
-        self.present = tuple(f"_{name}" for name in self.batch.info_names)
+        self.present = tuple(f"_{name}" for name in self.batch.info_rows)
         self.single_observation_space, self.single_action_space = spaces_of(self.setup)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)

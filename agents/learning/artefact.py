@@ -37,7 +37,7 @@ class Artefact:
 
     Attributes:
         plan: by which it was trained, its task and interface in it.
-        arm: that its filters and its base controller believe in.
+        arm: modelled by its filters and its base controller.
         weights: of the acting networks, without the critic.
         run: seed, version, commit, actions, seconds, curve: [[actions, mean return of an episode], …].
     """

@@ -37,7 +37,7 @@ class EpisodeVecEnv(VecEnv):
 
     Args:
         plan: task, arms, interface, reward.
-        arm: that is moved, and that the interface believes in.
+        arm: simulated, and modelled by the interface.
         seed: of the run.
     """
 

@@ -36,7 +36,7 @@ class PolicyInterface:
 
     Args:
         options: features, and effect of the actions.
-        arm: that the policy's filters and its base controller believe in.
+        arm: modelled by the policy's filters and its base controller.
         interval: control period [s].
 
     Raises:

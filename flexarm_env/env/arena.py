@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.env import layout as at
-from flexarm_env.env.pool import LINE
 from flexarm_env.env.setup import Setup
+from flexarm_env.env.shares import LINE
 from flexarm_env.plant import batch as plant_at
 from flexarm_env.plant.plant import Plant
 

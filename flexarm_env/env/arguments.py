@@ -22,7 +22,7 @@ class EnvArguments(TypedDict, total=False):
     """Keyword arguments of every environment, beside its task and its arm; each may be left out.
 
     Attributes:
-        prior: the arm that a controller believes in; the machine's nominal values by default.
+        prior: the model of the arm for controllers; the machine's nominal values by default.
         randomise: values drawn anew for each episode: {"payload.mass": (0.0, 0.3)}, lowest and highest in SI units.
         vary: the same as shares of the arm's own values: {"hub.inertia": 0.1} is ±10 %.
         disturb: taps and drop-outs, see Disturbance: {"tap_rate": 0.5, "tap_torque": 0.3, "dropout_rate": 1.0}.
@@ -67,7 +67,7 @@ def make_setup(task: str | Task, arm: ArmLike, given: EnvArguments, further: Ite
 
 
 def find_prior(arm: ArmLike, given: EnvArguments) -> Arm:
-    """Load the arm that a controller believes in: the machine's nominal values unless another one is given."""
+    """Load the model of the arm for controllers: the machine's nominal values unless another one is given."""
     prior = given.get("prior")
     return find_arm(arm if prior is None else prior)
 

@@ -12,8 +12,8 @@ from flexarm_env.env import layout as at
 from flexarm_env.env.arena import arena_of, physics_of, places_of
 from flexarm_env.env.compose import environment_kernel
 from flexarm_env.env.draws import key_of, uniform
-from flexarm_env.env.pool import Arms
 from flexarm_env.env.setup import Setup, check_layouts, per_torque_of, sensors_of, settings_of
+from flexarm_env.env.shares import Arms
 from flexarm_env.env.threads import Crew
 from flexarm_env.env.variation import hash_of
 from flexarm_env.errors import InputError
@@ -34,8 +34,8 @@ class Batch:
 
     Attributes:
         observations: (arms, signals + 1), float32.
-        outcome: of a step (rows, arms), see layout; the rows of an info from HUB_ANGLE on.
-        info_names: of these rows, in their order.
+        outcome: of a step (rows, arms), see layout.
+        info_rows: rows of the outcome that an info reports, by name.
         info_of: makes the info of one arm from its column of the outcome, as a list.
         requested: commands of the next step (arms,) [A or V].
         exact_readings: readings without noise, delay and steps, then the plant's truth (arms, signals + TRUTH), SI units.
@@ -74,7 +74,7 @@ class Batch:
         self.first_outcome, self.first_observation = self.outcome[:, 0], self.observations[0]
         self.kernel = kernel = environment_kernel(setup.task.terms)
         self.step_batch = plant.kernel.step_batch
-        self.after_step, self.info_names, self.info_of = kernel.after_step, kernel.INFO_NAMES, kernel.info_of
+        self.after_step, self.info_rows, self.info_of = kernel.after_step, kernel.INFO_ROWS, kernel.info_of
         arms = Arms(self.arena, self.layout, self.physics, self.places, self.keys, self.observations)
         self.crew = Crew(threads, count, self.step_batch, self.after_step, arms) if threads > 1 else None
 
@@ -150,7 +150,8 @@ class Batch:
 
     def info(self) -> dict[str, Floats]:
         """Copy the quantities of an info, by name (arms,): the truth, the target, the command, the reward's terms."""
-        return dict(zip(self.info_names, self.outcome[at.HUB_ANGLE :].copy(), strict=True))
+        outcome = self.outcome.copy()
+        return {name: outcome[row] for name, row in self.info_rows.items()}
 
     def arm_of(self, arm: int) -> Arm:
         """Draw the arm of the present episode again."""

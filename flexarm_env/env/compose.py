@@ -20,8 +20,15 @@ from flexarm_env.tasks.reward import RewardTerm, Sample
 #: The kernel, each file after those that it calls; the terms of the reward come before the last.
 FILES = ("draws.py", "layout.py", "sensing.py")
 LAST = "kernel.py"
-#: Names of an info, in the order of the outcome's rows from HUB_ANGLE on; those of the reward's terms follow.
-INFO = ("hub_angle", "hub_speed", "tip_deflection", "stuck", "target", "command")
+#: Rows of the outcome that an info reports, by name; those of the reward's terms follow.
+INFO = {
+    "hub_angle": at.HUB_ANGLE,
+    "hub_speed": at.HUB_SPEED,
+    "tip_deflection": at.TIP_DEFLECTION,
+    "stuck": at.STUCK,
+    "target": at.TARGET,
+    "command": at.COMMAND,
+}
 DECORATOR = '@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)'
 
 
@@ -30,7 +37,7 @@ def environment_kernel(terms: tuple[RewardTerm, ...]) -> Any:
     """Compile the kernel of tasks with these terms, or take it from the cache.
 
     Returns:
-        A module with the kernels after_step, after_reset and request, the names of an info, and info_of, which makes one.
+        A module with the kernels after_step, after_reset and request, the rows of an info by name, and info_of, which makes one.
     """
     return _module(_source(terms))
 
@@ -64,9 +71,9 @@ def _write_terms(terms: tuple[RewardTerm, ...]) -> str:
 
 def _info_of(terms: tuple[RewardTerm, ...]) -> str:
     """Write the function that makes the info of one arm; written out, since it is called in every step."""
-    names = (*INFO, *(f"reward_{term.name}" for term in terms))
-    items = [f"{name!r}: outcome[{at.HUB_ANGLE + i}]{' > 0.0' if name == 'stuck' else ''}" for i, name in enumerate(names)]
-    return "\n".join([f"INFO_NAMES = {names}", "def info_of(outcome):", f"    return {{{', '.join(items)}}}"])
+    rows = INFO | {f"reward_{term.name}": at.TERMS + i for i, term in enumerate(terms)}
+    items = [f"{name!r}: outcome[{row}]{' > 0.0' if name == 'stuck' else ''}" for name, row in rows.items()]
+    return "\n".join([f"INFO_ROWS = {rows}", "def info_of(outcome):", f"    return {{{', '.join(items)}}}"])
 
 
 def _term(term: RewardTerm) -> str:

@@ -38,7 +38,7 @@ class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
         arguments: prior, randomise, vary, disturb, control_rate, physical: see EnvArguments.
 
     Attributes:
-        prior: the arm that a controller believes in.
+        prior: the model of the arm for controllers.
         title: of the pictures; task and arm by default.
 
     Raises:

@@ -98,7 +98,7 @@ def page_of(task: Task) -> str:
 
 def _rewards(task: Task) -> str:
     rows = [("Term in `info`", "Weight", "Value")]
-    rows += [(f"`reward_{term.name}`", f"{task.weight(term):g}", term.formula) for term in task.terms]
+    rows += [(f"`reward_{term.name}`", f"{task.weight(term):g}", term.formula.replace("|", "\\|")) for term in task.terms]
     widths = [max(len(row[i]) for row in rows) for i in range(3)]
     lines = ["| " + " | ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) + " |" for row in rows]
     return "\n".join([lines[0], "|" + "|".join("-" * (width + 2) for width in widths) + "|", *lines[1:]])

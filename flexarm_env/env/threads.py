@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from flexarm_env.env.pool import Arms, begin, claims, finish, help_out, next_share, was_asleep
+from flexarm_env.env.shares import Arms, begin_step, finish_share, first_claim, wait_for_shares, wake, work_on_shares
 
 #: Part of its share of the arms that the caller moves before it turns to the pool, and shares of the pool per thread.
 OWN_SHARE, SHARES = 0.85, 8
@@ -59,7 +59,7 @@ class Crew:
     Args:
         size: of the crew, the caller counted.
         count: of arms.
-        move: moves arms on, see pool.help_out.
+        move: moves arms on, see shares.work_on_shares.
         observe: rewards and observes them.
         arms: arrays of all arms.
     """
@@ -68,30 +68,30 @@ class Crew:
         own = round(OWN_SHARE * count / size)
         share = max((count - own) // (SHARES * size), LEAST_SHARE)
         self.limits = [0, *range(own, count, share), count]
-        self.shares, self.first = len(self.limits) - 1, claims(size)
+        self.shares, self.first = len(self.limits) - 1, first_claim(size)
         self.last = self.first + self.shares
         self.pool = np.zeros(self.last, dtype=np.int64)
         self.helpers = [Helper() for _ in range(size - 1)]
         common = (move, observe, arms, self.pool, np.array(self.limits), size)
-        self.jobs = [partial(help_out, *common, part) for part in range(1, size)]
+        self.jobs = [partial(work_on_shares, *common, part) for part in range(1, size)]
         self.dismiss = weakref.finalize(self, _dismiss, self.helpers)
 
     def run(self, work: Callable[[int, int], None]) -> None:
         """Move all arms on; `work` moves those from first to last - 1 on in the caller's thread."""
-        begin(self.pool, self.first)
+        begin_step(self.pool, self.first)
         for part, (helper, job) in enumerate(zip(self.helpers, self.jobs, strict=True), start=1):
-            if was_asleep(self.pool, part):
+            if wake(self.pool, part):
                 helper.call(job)
         place = self.first
         try:
             while place >= 0:
                 share = place - self.first
                 work(self.limits[share], self.limits[share + 1])
-                place = next_share(self.pool, place + 1, self.last)
+                place = finish_share(self.pool, place + 1, self.last)
         except BaseException:  # no helper is to be at work still when the next step begins
             while place >= 0:
-                place = next_share(self.pool, place + 1, self.last)
+                place = finish_share(self.pool, place + 1, self.last)
             raise
         finally:
-            while not finish(self.pool, self.shares):
+            while not wait_for_shares(self.pool, self.shares):
                 time.sleep(0.0)

@@ -40,7 +40,7 @@ class View:
         self.trace: deque[tuple[float, float]] = deque(maxlen=round(TRACE_TIME * setup.rate))
 
     def clear(self) -> None:
-        """Forget the strain of an episode that is over."""
+        """Clear the strain of the last episode."""
         self.trace.clear()
 
     def draw(self, batch: Batch, state: NDArray[np.float64]) -> NDArray[np.uint8] | None:

@@ -42,6 +42,13 @@ class Sample(NamedTuple):
     failed: bool
 
 
+#: A sample on which a term is tried.
+EXAMPLE = Sample(
+    hub_angle=0.1, hub_speed=0.2, tip_deflection=0.003, stuck=False, target=0.4, command=0.5, command_change=0.1,
+    start_angle=0.0, beam_length=1.0, time=0.5, failed=False,
+)  # fmt: skip
+
+
 @dataclass(frozen=True)
 class RewardTerm:
     """One term of a reward: weight · function(sample), reported in `info` as `reward_<name>`.
@@ -55,7 +62,7 @@ class RewardTerm:
         formula: for the environment's page, without the weight.
 
     Raises:
-        InputError: for a function that cannot be compiled into a kernel.
+        InputError: for a function that cannot be compiled into a kernel, or does not return a number.
 
     Examples:
         >>> def tip_speed(hub_speed, beam_length):
@@ -80,6 +87,7 @@ class RewardTerm:
         for name, value in self._names().items():
             if not (value is math or _is_number(value)):
                 raise InputError(f"{where} uses '{name}'; a term uses its quantities, math, and numbers of its file only")
+        self._try()
 
     @property
     def name(self) -> str:
@@ -95,6 +103,17 @@ class RewardTerm:
     def numbers(self) -> dict[str, float]:
         """Numbers of its file that the function uses, by name."""
         return {name: value for name, value in self._names().items() if not isinstance(value, ModuleType)}
+
+    def _try(self) -> None:
+        """Call the function once; divisions by zero and the like are left to the kernel, which does not raise them."""
+        try:
+            value = self.function(**{name: getattr(EXAMPLE, name) for name in self.quantities})
+        except (ArithmeticError, ValueError):
+            return
+        except Exception as error:
+            raise InputError(f"reward term '{self.name}' fails: {type(error).__name__}: {error}") from error
+        if not _is_number(value):
+            raise InputError(f"reward term '{self.name}' returns {value!r}; return a number")
 
     def _names(self) -> dict[str, Any]:
         """What the function uses from outside, by name."""

@@ -142,6 +142,10 @@ def helped(hub_angle: float) -> float:
     return haste(hub_angle)
 
 
+def silent(hub_speed: float) -> None:
+    pass
+
+
 @pytest.mark.parametrize(
     ("make", "words"),
     [
@@ -149,6 +153,7 @@ def helped(hub_angle: float) -> float:
         (lambda: RewardTerm(helped, 1.0, ""), "uses 'haste'"),
         (lambda: RewardTerm(lambda hub_angle: hub_angle, 1.0, ""), "with def"),
         (lambda: RewardTerm(haste, math.inf, ""), "weight = inf"),
+        (lambda: RewardTerm(silent, 1.0, ""), "returns None"),
         (lambda: Task("mine", 1.0, terms=(*COMMON_TERMS, COMMON_TERMS[0])), "two reward terms 'distance'"),
     ],
 )

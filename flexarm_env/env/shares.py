@@ -20,8 +20,8 @@ LINE = 8
 # --- places of a pool's numbers: those that different threads write are in different lines
 STEP, DONE, AWAKE = 0, LINE, 2 * LINE
 
-#: How often a helper looks for the next step before it goes to sleep: about 0.1 ms.
-LOOKS = 500_000
+#: How often a helper polls for the next step before it goes to sleep: about 0.1 ms.
+POLLS = 500_000
 
 FLOATS, PLACES = float64[::1], int64[::1]
 #: Types of the kernel that moves arms on (plant.batch.step_batch), and of the one that rewards and observes them
@@ -59,8 +59,8 @@ def _pointer(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
 
 
 @intrinsic
-def look(_, pool, place):
-    """Read pool[place] as other threads last left it."""
+def atomic_load(_, pool, place):
+    """Read pool[place] as other threads last wrote it."""
 
     def generate(context, builder, signature, arguments):
         return builder.load_atomic(_pointer(context, builder, signature, arguments), "seq_cst", 8)
@@ -69,7 +69,7 @@ def look(_, pool, place):
 
 
 @intrinsic
-def add(_, pool, place, value):
+def atomic_add(_, pool, place, value):
     """Add to pool[place], at once for all threads, and return the old value."""
 
     def generate(context, builder, signature, arguments):
@@ -79,7 +79,7 @@ def add(_, pool, place, value):
 
 
 @intrinsic
-def exchange(_, pool, place, value):
+def atomic_exchange(_, pool, place, value):
     """Set pool[place], at once for all threads, and return the old value."""
 
     def generate(context, builder, signature, arguments):
@@ -89,7 +89,7 @@ def exchange(_, pool, place, value):
 
 
 @intrinsic
-def replace(_, pool, place, old, new):
+def compare_and_swap(_, pool, place, old, new):
     """Set pool[place] to the new value if it is the old one; return whether it was."""
 
     def generate(context, builder, signature, arguments):
@@ -101,77 +101,77 @@ def replace(_, pool, place, old, new):
 
 
 @njit((int64(int64)), cache=True)
-def claims(threads):
-    """Locate the shares' claims in a pool."""
+def first_claim(threads):
+    """Locate the first share's claim in a pool."""
     return AWAKE + LINE * threads
 
 
 @njit((PLACES, int64), cache=True, nogil=True)
-def begin(pool, first):
+def begin_step(pool, first):
     """Begin a step, with the first share, at pool[first], already claimed."""
-    exchange(pool, DONE, 0)
+    atomic_exchange(pool, DONE, 0)
     pool[first] += 1
-    add(pool, STEP, 1)
+    atomic_add(pool, STEP, 1)
 
 
 @njit(boolean(PLACES, int64), cache=True, nogil=True)
-def was_asleep(pool, part):
+def wake(pool, part):
     """Mark helper `part` as awake; return whether it was asleep."""
-    return exchange(pool, AWAKE + LINE * part, 1) == 0
+    return atomic_exchange(pool, AWAKE + LINE * part, 1) == 0
 
 
 @njit(int64(PLACES, int64, int64), cache=True, nogil=True)
-def next_share(pool, first, last):
-    """Count one share as done, and claim the first unclaimed one of those whose claims are in pool[first:last].
+def finish_share(pool, first, last):
+    """Count one share as done, and claim the first unclaimed one of those with claims in pool[first:last].
 
     Return its place there, or -1.
     """
-    add(pool, DONE, 1)
-    step = look(pool, STEP)
+    atomic_add(pool, DONE, 1)
+    step = atomic_load(pool, STEP)
     for place in range(first, last):
-        if replace(pool, place, step - 1, step):
+        if compare_and_swap(pool, place, step - 1, step):
             return place
     return -1
 
 
 @njit(boolean(PLACES, int64), cache=True, nogil=True)
-def finish(pool, shares):
+def wait_for_shares(pool, shares):
     """Wait up to about 0.1 ms until `shares` shares are done; return whether they are."""
-    looks = 0
-    while look(pool, DONE) < shares and looks < LOOKS:
-        looks += 1
-    return looks < LOOKS
+    polls = 0
+    while atomic_load(pool, DONE) < shares and polls < POLLS:
+        polls += 1
+    return polls < POLLS
 
 
 @njit((MOVE, OBSERVE, ARMS, PLACES, PLACES, int64, int64), cache=True, nogil=True)
-def help_out(move, observe, arms, pool, bounds, threads, part):
+def work_on_shares(move, observe, arms, pool, bounds, threads, part):
     """Move on the shares that nobody has claimed, step after step, until no step follows for a while.
 
     Args:
         move: moves arms on.
         observe: rewards and observes them.
         arms: Arms.
-        pool: steps, claims, and who is awake.
+        pool: number of the step, finished shares, awake threads, claims.
         bounds: (shares + 1,): share i is the arms from bounds[i] to bounds[i + 1] - 1.
         threads: number of them.
         part: number of this one, from 1 up.
     """
     shares, awake = len(bounds) - 1, AWAKE + LINE * part
     last = shares * (part + 1) // threads - 1
-    exchange(pool, awake, 1)
+    atomic_exchange(pool, awake, 1)
     while True:
-        step = look(pool, STEP)
+        step = atomic_load(pool, STEP)
         for i in range(shares):
             share = (last - i) % shares
-            if replace(pool, claims(threads) + share, step - 1, step):
+            if compare_and_swap(pool, first_claim(threads) + share, step - 1, step):
                 move(arms.arena, arms.layout, arms.physics, bounds[share], bounds[share + 1], part)
                 observe(arms.arena, arms.places, arms.keys, arms.observations, bounds[share], bounds[share + 1])
-                add(pool, DONE, 1)
-        looks = 0
-        while look(pool, STEP) == step and looks < LOOKS:
-            looks += 1
-        if looks == LOOKS:
-            exchange(pool, awake, 0)
-            if look(pool, STEP) == step:  # else a step began before it was seen that this thread sleeps
+                atomic_add(pool, DONE, 1)
+        polls = 0
+        while atomic_load(pool, STEP) == step and polls < POLLS:
+            polls += 1
+        if polls == POLLS:
+            atomic_exchange(pool, awake, 0)
+            if atomic_load(pool, STEP) == step:  # else a step began before it was seen that this thread sleeps
                 return
-            exchange(pool, awake, 1)
+            atomic_exchange(pool, awake, 1)
