@@ -46,8 +46,8 @@ class Task:
         coast: time from the end of the pulse to the start of the episode [s].
         hold: whether the target is the angle where the episode starts.
         range: the episode ends where the hub is further from its start than this [rad]; infinity: never.
+        weights: of the reward's terms by name, in place of their own; a term that is left out weighs nothing.
         terms: of the reward, in the order in which they are added.
-        weights: of the terms by name, in place of their own; a term that is left out weighs nothing.
         summary: first line of the environment's page.
         description: paragraphs of the environment's page, in Markdown.
 
@@ -71,8 +71,8 @@ class Task:
     coast: float = 0.0
     hold: bool = False
     range: float = math.pi
-    terms: tuple[RewardTerm, ...] = COMMON_TERMS
     weights: Mapping[str, float] | None = None
+    terms: tuple[RewardTerm, ...] = COMMON_TERMS
     summary: str = ""
     description: str = ""
 
