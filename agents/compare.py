@@ -30,7 +30,7 @@ from flexarm_env.terminal.provenance import commit
 
 
 def find_policies(folder: Path) -> dict[str, list[Path]]:
-    """Return the stored runs of each configuration, by its name.
+    """Find the stored runs of each configuration, by its name.
 
     Raises:
         InputError: where there are none.
@@ -44,7 +44,7 @@ def find_policies(folder: Path) -> dict[str, list[Path]]:
 
 
 def evaluate_policies(paths: Sequence[Path], task: str, arms: str, arm: str, count: int) -> dict[str, np.ndarray]:
-    """Return each measure (runs, arms) of the runs of one configuration."""
+    """Evaluate the runs of one configuration: each measure (runs, arms)."""
     nominal = Arm.load(arm)
     agents = [Artefact.load(path).agent() for path in paths]
     runs = [measure(roll_out(agent, TASKS[task], nominal, SETS[arms], count, RATE), TASKS[task]) for agent in agents]
@@ -52,14 +52,14 @@ def evaluate_policies(paths: Sequence[Path], task: str, arms: str, arm: str, cou
 
 
 def evaluate_any(task: str, arms: str, who: str | Sequence[Path], arm: str, count: int) -> dict[str, np.ndarray]:
-    """Return each measure (runs, arms) of a controller, which is one run, or of a configuration's runs."""
+    """Evaluate a controller, as one run, or a configuration's runs: each measure (runs, arms)."""
     if isinstance(who, str):
         return {name: values[None] for name, values in evaluate_controller(who, task, arms, arm, count).items()}
     return evaluate_policies(who, task, arms, arm, count)
 
 
 def compare(policies: dict[str, list[Path]], arm: str, count: int, jobs: int) -> dict[str, Any]:
-    """Return for each task and set the cells of all, and how each policy stands against the best of both kinds."""
+    """Evaluate all on each task and set; compare each policy with the best controller of both kinds."""
     tasks = {name: Artefact.load(paths[0]).plan.task for name, paths in policies.items()}
     work: dict[tuple[str, str, str], Any] = {}
     for task in TASKS:
@@ -92,7 +92,7 @@ def _judged(values: dict[str, Any], policies: dict[str, list[Path]]) -> dict[str
 
 
 def about(policies: dict[str, list[Path]]) -> dict[str, Any]:
-    """Return for each configuration its runs' seeds, size and time, and its plan."""
+    """Describe each configuration: its runs' seeds, size and time, and its plan."""
     found = {}
     for name, paths in policies.items():
         runs = [Artefact.load(path) for path in paths]

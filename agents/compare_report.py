@@ -13,7 +13,7 @@ GOAL = ("slew", "randomised")
 
 
 def report_of(result: Mapping[str, Any]) -> str:
-    """Return the whole report: how it was made, the goals, one table for each task and set."""
+    """Write the whole report: its origin, the goals, one table for each task and set."""
     lines = [
         "# Policies",
         "",

@@ -31,14 +31,14 @@ RATE = 200.0
 
 
 def evaluate_controller(name: str, task: str, arms: str, arm: str, count: int) -> dict[str, np.ndarray]:
-    """Return each measure (arms,) of a controller that believes in the nominal arm."""
+    """Evaluate a controller designed on the nominal arm: each measure (arms,)."""
     nominal = Arm.load(arm)
     controller = make_controller(name, nominal, 1.0 / RATE)
     return measure(roll_out(controller, TASKS[task], nominal, SETS[arms], count, RATE), TASKS[task])
 
 
 def evaluate(names: Sequence[str], arm: str, count: int, jobs: int) -> dict[str, Any]:
-    """Return the cells of all controllers, tasks and sets: each measure's mean and interval, and its difference from PD's."""
+    """Evaluate controllers on all tasks and sets: each measure's mean and interval, and its difference from PD's."""
     cells = [(task, arms, name) for task in TASKS for arms in SETS for name in names]
     tasks = (delayed(evaluate_controller)(name, task, arms, arm, count) for task, arms, name in cells)
     found: dict[tuple[str, str, str], dict[str, np.ndarray]] = {}

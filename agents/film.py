@@ -22,7 +22,7 @@ COLOURS = 48
 
 
 def pictures(name: str, env_id: str, arm: str) -> list[Image.Image]:
-    """Return what a controller, or the policy in a file, does in one episode, one picture every 1 / RATE seconds."""
+    """Draw one episode of a controller, or of the policy in a file, with a picture every 1 / RATE seconds."""
     env = gym.make(env_id, arm=arm, physical=True, render_mode="rgb_array")
     bare = env.unwrapped
     assert isinstance(bare, FlexArmEnv)
@@ -44,7 +44,7 @@ def pictures(name: str, env_id: str, arm: str) -> list[Image.Image]:
 
 
 def driver(name: str, arm: str, interval: float) -> Agent:
-    """Return a controller by its name, or a policy by its file."""
+    """Load a controller by its name, or a policy from its file."""
     if name in CONTROLLERS:
         return make_controller(name, Arm.load(arm), interval)
     # policies need torch, controllers do not
@@ -61,7 +61,7 @@ def film(names: tuple[str, str], env_id: str, arm: str, path: Path) -> None:
         frame.paste(left, (0, 0))
         frame.paste(right, (WIDTH, 0))
         both.append(frame)
-    # One palette for all, from where the hub sticks and every colour is there; by coverage, so that small marks keep theirs.
+    # One palette for all, from a picture with a stuck hub, which has every colour; by coverage, so that small marks keep theirs.
     palette = both[-1].quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE)
     both = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in both]
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -69,7 +69,7 @@ def film(names: tuple[str, str], env_id: str, arm: str, path: Path) -> None:
 
 
 def main() -> None:
-    """Make the film that README.md shows, or another."""
+    """Make the film of README.md, or another."""
     parser = argparse.ArgumentParser(prog="python -m agents.film", description=__doc__)
     parser.add_argument("--controllers", nargs=2, default=["pd", "vibration_dual"], metavar="NAME", help="or files of policies")
     parser.add_argument("--env", default="FlexArm/Slew-v0", help="id of the environment")

@@ -1,4 +1,4 @@
-"""Whether policies do better than classical controllers, by how much, and whether chance could have done it."""
+"""Comparison of policies with classical controllers: the difference, and its significance."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Floats = NDArray[np.float64]
 #: Measures (runs, arms) of one agent.
 Values = Mapping[str, Floats]
 
-#: The controllers of the thesis; the others are what it leaves for future work.
+#: The controllers of the thesis; it leaves the others for future work.
 THESIS = (
     "pd",
     "pd_rate_limited",
@@ -29,18 +29,18 @@ GOALS = {"settling_time": 0.4, "steady_error": 0.8, "residual_strain": 0.7}
 
 
 def cell_of(values: Values) -> dict[str, dict[str, float]]:
-    """Return each measure's interquartile mean and the ends of its 95 % interval."""
+    """Compute each measure's interquartile mean and the ends of its 95 % interval."""
     found = {name: stratified_interval([measured]) for name, measured in values.items()}
     return {name: {"iqm": value, "low": low, "high": high} for name, (value, low, high) in found.items()}
 
 
 def best_of(names: Sequence[str], cells: Mapping[str, Any], measure: str) -> str:
-    """Return who has the least interquartile mean of a measure."""
+    """Find the controller with the least interquartile mean of a measure."""
     return min(names, key=lambda name: cells[name][measure]["iqm"])
 
 
 def verdicts(policy: str, rivals: Sequence[str], cells: Mapping[str, Any], values: Mapping[str, Values]) -> list[dict[str, Any]]:
-    """Return for each measure of GOALS how a policy stands against the best of its rivals in that very measure.
+    """Compare a policy with the best of its rivals in each measure of GOALS.
 
     Args:
         policy: name.
@@ -69,7 +69,7 @@ def verdicts(policy: str, rivals: Sequence[str], cells: Mapping[str, Any], value
 
 
 def against_thesis(verdict: Mapping[str, Any]) -> str:
-    """Say whether a goal against the thesis is reached."""
+    """Word the result for a goal against the thesis."""
     if verdict["less_by"] >= verdict["goal"] and verdict["apart"]:
         return "reached"
     if not verdict["apart"]:
@@ -78,7 +78,7 @@ def against_thesis(verdict: Mapping[str, Any]) -> str:
 
 
 def against_classical(verdict: Mapping[str, Any]) -> str:
-    """Say whether a policy is better, worse, or neither, by intervals that do not touch."""
+    """Word the comparison with a rival: better or worse where the intervals are disjoint."""
     if not verdict["apart"]:
         return "no difference"
     return "better" if verdict["less_by"] > 0.0 else "worse"

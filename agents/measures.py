@@ -1,4 +1,4 @@
-"""What is measured of an episode: how soon the tip is there, how far it overshoots, what error and vibration remain."""
+"""Measures of an episode: settling time, overshoot, steady error, residual vibration, effort."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from flexarm_env.tasks import Task
 
 Floats = NDArray[np.float64]
 
-#: The tip has settled within this of the target [rad].
+#: Distance from the target within which the tip has settled [rad].
 BAND = np.deg2rad(1.0)
 #: Time at the end of each stretch over which error and vibration are taken [s].
 TAIL = 0.5
-#: Name, unit and meaning of what is measured; less is better for each.
+#: Name, unit and meaning of each measure; less is better.
 MEASURES = {
     "settling_time": ("s", "until the tip stays within ±1° of the target; the whole stretch where it never does"),
     "unsettled": ("%", "stretches at whose end the tip is not within ±1°"),
@@ -29,7 +29,7 @@ MEASURES = {
 
 @dataclass(frozen=True)
 class Trajectories:
-    """What happened to arms in one episode each, (samples, arms) or as said.
+    """Trajectories of arms in one episode each, (samples, arms) unless stated otherwise.
 
     Attributes:
         tip: angle of the tip seen from the hub's axis [rad].
@@ -37,7 +37,7 @@ class Trajectories:
         strain: base strain without noise [V].
         command: [A or V].
         failed: (arms,) whether the episode ended early.
-        start: (arms,) angle where it started [rad].
+        start: (arms,) hub angle at the start [rad].
         interval: sampling time [s].
     """
 
@@ -51,9 +51,9 @@ class Trajectories:
 
 
 def measure(seen: Trajectories, task: Task) -> dict[str, Floats]:
-    """Return each measure (arms,), averaged over the stretches between jumps of the target.
+    """Compute each measure (arms,), averaged over the stretches between jumps of the target.
 
-    An arm whose episode ended early never settled, and its errors are those of the task's whole range.
+    An arm with an early end of its episode counts as never settled, with the errors of the task's whole range.
     """
     length = round((task.half_period or task.duration) / seen.interval)
     firsts = range(0, len(seen.tip) - length + 1, length)

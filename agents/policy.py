@@ -1,4 +1,4 @@
-"""A trained policy of Stable-Baselines3 as an agent that can be evaluated beside controllers."""
+"""A trained policy of Stable-Baselines3 as an agent, for evaluation beside controllers."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from flexarm_env.tasks import Task
 
 
 class Predictor(Protocol):
-    """What a model of Stable-Baselines3 or sb3-contrib offers."""
+    """Interface of a model of Stable-Baselines3 or sb3-contrib."""
 
     def predict(self, observation: Any, state: Any, episode_start: Any, deterministic: bool) -> tuple[Any, Any]:
-        """Return actions and the memory of a recurrent policy."""
+        """Compute actions and the memory of a recurrent policy."""
 
 
 class TrainedPolicy:
@@ -24,8 +24,8 @@ class TrainedPolicy:
 
     Args:
         model: of Stable-Baselines3 or sb3-contrib, recurrent or not.
-        task: at which it was trained.
-        arm: whose sensors it saw.
+        task: of its training.
+        arm: of its training, with the sensors.
     """
 
     def __init__(self, model: Predictor, task: Task, arm: Arm) -> None:
@@ -39,7 +39,7 @@ class TrainedPolicy:
         self.memory, self.starts = None, np.ones(count or 1, dtype=bool)
 
     def action(self, observation: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
-        """Return shares of the limit (arms, 1) for physical observations (arms, signals + 1)."""
+        """Compute shares of the limit (arms, 1) for physical observations (arms, signals + 1)."""
         seen = np.asarray(observation, dtype=np.float32) / self.scales
         action, self.memory = self.model.predict(seen, self.memory, self.starts, True)
         self.starts = np.zeros_like(self.starts)

@@ -20,7 +20,7 @@ SHORT, SHORT_SETS = ("pd", "vibration_dual", "shaped_zvd", "lqg", "lqg_scheduled
 
 
 def table_of(result: Mapping[str, Any]) -> str:
-    """Return the whole report: one table for each task and set, with 95 % intervals."""
+    """Write the whole report: one table for each task and set, with 95 % intervals."""
     lines = [
         "# Baselines",
         "",
@@ -55,7 +55,7 @@ def _with_interval(value: Mapping[str, float], digits: int) -> str:
 
 
 def summary_of(result: Mapping[str, Any], task: str = "slew") -> str:
-    """Return a short table for README.md: settling, steady error and residual strain of one task."""
+    """Write a short table for README.md: settling, steady error and residual strain of one task."""
     columns = (("settling_time", "settling [s]", 2), ("steady_error", "error [°]", 2), ("residual_strain", "strain [V]", 3))
     head = ["controller", *(f"{arms}: {heading}" for arms in SHORT_SETS for _, heading, _ in columns)]
     lines = [_line(head), "|---|" + "---:|" * (len(head) - 1)]

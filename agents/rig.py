@@ -1,4 +1,4 @@
-"""The independent simulator of tests/rig as a machine that agents drive sample by sample."""
+"""The independent simulator of tests/rig as a machine, driven by agents sample by sample."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 
 #: Step of the machine's integrator [s]; half of it moves the measures of a slew by less than a hundredth of their size.
 STEP = 2e-5
-#: Current at which the drive ends [A], as the arms' files have it.
+#: Largest current of the drive [A], as in the arms' files.
 LIMIT = 5.0
 
 
@@ -53,7 +53,7 @@ class Machine:
         latch(self.state, self.senses, 0.0, self.clean[0])
 
     def readings(self) -> Floats:
-        """Return what the sensors show now (signals,), with noise and the converters' steps."""
+        """Read the sensors (signals,), with noise and the converters' steps."""
         late = max(self.sample - int(self.senses["late_samples"]), 0)
         found: Floats = np.rint((self.clean[late] + self.noise[self.sample]) / self.steps) * self.steps
         return found
@@ -69,13 +69,13 @@ class Machine:
         self.sample += 1
 
     def truth(self) -> tuple[float, float, float]:
-        """Return hub angle [rad], tip deflection [m] and base strain [V] as they are."""
+        """Return the true hub angle [rad], tip deflection [m] and base strain [V]."""
         _, base = moments(self.bend, self.modal[0])
         return float(self.state[TH]), float(self.tip_row @ self.bend), float(self.gain * base)
 
 
 def drive(agent: Agent, task: Task, settings: Mapping[str, float], count: int, rate: float = 200.0) -> Trajectories:
-    """Return what happens on a machine in `count` episodes of a slew that differ by the sensors' noise.
+    """Drive a machine through `count` episodes of a slew with different noise of the sensors.
 
     Args:
         agent: that drives.

@@ -1,4 +1,4 @@
-"""What controllers and policies for the nominal and for the corrected arm do on the machine, as numbers and Markdown."""
+"""Results on the machine of controllers and policies for the nominal and the corrected arm, as numbers and Markdown."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from agents.statistics import RESAMPLES, Interval, drawn_again, with_ends
 
 Floats = NDArray[np.float64]
 
-#: Least values that count in a logarithm, far below what sensors show: [s], [deg], [V].
+#: Least values in a logarithm, far below the sensors' resolution: [s], [deg], [V].
 LEAST = {"settling_time": 0.005, "steady_error": 1e-3, "residual_strain": 1e-4}
 COLUMNS = (("settling_time", "settling [s]", 2), ("steady_error", "error [°]", 3), ("residual_strain", "strain [V]", 4))
 
 
 def cost(values: Mapping[str, Floats]) -> Floats:
-    """Return the mean logarithm (runs, episodes) of settling time, steady error and residual strain."""
+    """Compute the mean logarithm (runs, episodes) of settling time, steady error and residual strain."""
     found: Floats = np.mean([np.log(np.maximum(values[name], LEAST[name])) for name in GOALS], axis=0)
     return found
 
 
 def less_by(values: Mapping[str, Floats], reference: Mapping[str, Floats], seed: int = 0) -> Interval:
-    """Return by which share the geometric mean of the three measures is below the reference's, with its 95 % interval.
+    """Compute the share by which the geometric mean of the three measures is below the reference's, with its 95 % interval.
 
     Runs and episodes are drawn again, on both sides apart: a run is whole.
     """
@@ -37,7 +37,7 @@ def less_by(values: Mapping[str, Floats], reference: Mapping[str, Floats], seed:
 
 
 def verdict_of(values: Mapping[str, Mapping[str, Floats]]) -> dict[str, Any]:
-    """Return a case's cells, and how much better each one for the corrected arm is than that for the nominal arm."""
+    """Compute a case's cells, and the improvement of each one for the corrected arm over that for the nominal arm."""
     gains = {}
     for name in values:
         who, _, kind = name.rpartition(", ")
@@ -50,7 +50,7 @@ def verdict_of(values: Mapping[str, Mapping[str, Floats]]) -> dict[str, Any]:
 
 
 def report_of(result: Mapping[str, Any]) -> str:
-    """Return the whole report."""
+    """Write the whole report."""
     lines = [
         "# From the simulator to the machine",
         "",

@@ -15,25 +15,25 @@ from flexarm_env.vector_env import FlexArmVectorEnv
 
 
 class Agent(Protocol):
-    """What can be evaluated: a controller of flexarm_env, or a policy that offers the same two methods."""
+    """Interface of evaluation: a controller of flexarm_env, or a policy with the same two methods."""
 
     def reset(self, count: int | None = None) -> None:
         """Start an episode of `count` arms."""
 
     def action(self, observation: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
-        """Return shares of the limit (arms, 1) for physical observations (arms, signals + 1)."""
+        """Compute shares of the limit (arms, 1) for physical observations (arms, signals + 1)."""
 
 
 def roll_out(
     agent: Agent, task: Task, arm: Arm, arms: ArmSet, count: int, rate: float = 200.0, first_seed: int = FIRST_SEED
 ) -> Trajectories:
-    """Return what happens to `count` arms of a set, the same ones whoever drives them.
+    """Drive `count` arms of a set through one episode each; the arms are the same for every agent.
 
     Args:
-        agent: that drives them.
-        task: at which they are.
+        agent: controller or policy.
+        task: of the episode.
         arm: the nominal one.
-        arms: what differs from arm to arm.
+        arms: set from which they are drawn.
         count: of arms.
         rate: control steps per second [Hz].
         first_seed: of the first arm; the evaluation's by default.
@@ -49,7 +49,7 @@ def roll_out(
     seen = batch.info()
     start = seen["hub_angle"]
     for k in range(steps):
-        # what was asked for in this sample: its end may be where the next target begins
+        # the target of this sample: at its end the next one may begin
         target[k] = seen["target"]
         observations, _, terminated, _, _ = envs.step(agent.action(observations))
         failed |= terminated
@@ -57,6 +57,6 @@ def roll_out(
         tip[k] = seen["hub_angle"] + seen["tip_deflection"] / length
         commands[k] = seen["command"]
         if strain is not None:
-            strains[k] = batch.looks[:, strain]
+            strains[k] = batch.exact_readings[:, strain]
     envs.close()
     return Trajectories(tip, target, strains, commands, failed, start, 1.0 / rate)

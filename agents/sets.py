@@ -1,4 +1,4 @@
-"""The fixed sets of arms on which everything is evaluated: the same draws for every controller and policy."""
+"""The fixed sets of arms for evaluation: the same draws for every controller and policy."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PAYLOAD = (0.0, 0.3)
 
 @dataclass(frozen=True)
 class ArmSet:
-    """What differs from arm to arm.
+    """Differences from arm to arm.
 
     Attributes:
         name: of the set.
@@ -36,7 +36,7 @@ class ArmSet:
     disturb: Mapping[str, float] = field(default_factory=dict)
 
     def arguments(self, arm: Arm) -> dict[str, Any]:
-        """Return the arguments of an environment whose arms are drawn from the set."""
+        """Make the arguments of an environment with arms drawn from the set."""
         vary = {path: self.constants for path in CONSTANTS if self.constants and _has(arm, path)}
         vary |= {f"{name}.{key}": self.friction for name, key in FRICTION.items() if self.friction and name in arm.effects}
         randomise = {"payload.mass": PAYLOAD} if self.payload and arm.can_have("payload") else {}

@@ -1,4 +1,4 @@
-"""Does the arm that a diagnosis corrected make better controllers of the machine? python -m agents.sim_to_rig answers.
+"""Compare controllers for a diagnosed arm with those for the nominal arm on the machine: python -m agents.sim_to_rig.
 
 The machine is the independent simulator of tests/rig with something hidden. Policies are trained, and classical
 controllers made, for the nominal arm, the nominal arm randomised (policies only) and the arm that `diagnose` corrected
@@ -38,14 +38,14 @@ from tests.rig import write_case
 
 PROJECT = Path(__file__).resolve().parent.parent
 FOLDER = PROJECT / "results" / "sim_to_rig"
-#: What is hidden: the rig's settings, and the effect's name in the catalogue.
+#: Hidden effects: the rig's settings, and the effect's name in the catalogue.
 CASES: Mapping[str, tuple[Mapping[str, float], str]] = {
     "cable": ({"cable": 0.15}, "cable_stiffness"),
     "dead-zone": ({"dead": 0.4}, "dead_zone"),
     "bias": ({"bias": 0.15}, "constant_torque"),
     "lag": ({"lag": 0.02}, "current_lag"),
 }
-#: By which plan policies of each kind are trained; corrected ones as nominal ones, on another arm.
+#: Training plan of each kind of policy; the corrected ones use the nominal plan on another arm.
 PLANS = {"nominal": "nominal", "randomised": "randomised", "corrected": "nominal"}
 NOMINAL = "thesis-fem"
 CLASSICAL = ("pd", "vibration_dual", "shaped_zvd", "lqg")
@@ -65,7 +65,7 @@ def correct(case: str, folder: Path, jobs: int) -> None:
 
 
 def plan_of(kind: str, case: str | None, folder: Path) -> tuple[Path, Plan]:
-    """Return under which name, and by which plan, policies of a kind are trained."""
+    """Look up the name and the training plan of a kind of policy."""
     plan = read_plan(PROJECT / "configs" / "agents" / "rig" / f"{PLANS[kind]}.toml")
     if case is None:
         return Path(kind), plan
@@ -73,12 +73,12 @@ def plan_of(kind: str, case: str | None, folder: Path) -> tuple[Path, Plan]:
 
 
 def wanted() -> list[tuple[str, str | None]]:
-    """Return each kind of policy, with its case where that matters."""
+    """List each kind of policy, with its case where that matters."""
     return [("nominal", None), ("randomised", None), *(("corrected", case) for case in CASES)]
 
 
 def make(folder: Path, jobs: int, say: Callable[[str], None]) -> None:
-    """Diagnose and train what is not there yet."""
+    """Make the missing diagnoses and policies."""
     from agents.train import one_run
 
     for case in CASES:
@@ -86,7 +86,7 @@ def make(folder: Path, jobs: int, say: Callable[[str], None]) -> None:
             say(f"diagnosing {case}")
             correct(case, folder / "arms", jobs)
     most = max(plan_of(kind, case, folder)[1].seeds for kind, case in wanted())
-    # seed by seed, so that a run that is stopped leaves as many of each kind
+    # seed by seed, so that a stopped run leaves equally many of each kind
     for seed in range(most):
         for kind, case in wanted():
             name, plan = plan_of(kind, case, folder)
@@ -95,13 +95,13 @@ def make(folder: Path, jobs: int, say: Callable[[str], None]) -> None:
 
 
 def policies_of(folder: Path, kind: str, case: str) -> list[Path]:
-    """Return the stored runs of a kind, for a case."""
+    """Find the stored runs of a kind, for a case."""
     name, plan = plan_of(kind, case if kind == "corrected" else None, folder)
     return [path for seed in range(plan.seeds) if (path := place_of(folder / "weights", name, seed)).is_file()]
 
 
 def evaluate(folder: Path, case: str, count: int, say: Callable[[str], None]) -> dict[str, dict[str, np.ndarray]]:
-    """Return each measure (runs, episodes) on a machine, of all policies and controllers."""
+    """Evaluate all policies and controllers on a machine: each measure (runs, episodes)."""
     settings, task = CASES[case][0], TASKS["slew"]
     agents: dict[str, list[Any]] = {}
     for kind in PLANS:
@@ -118,7 +118,7 @@ def evaluate(folder: Path, case: str, count: int, say: Callable[[str], None]) ->
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Evaluate what is stored, after making what is missing where asked, and return the exit code."""
+    """Evaluate the stored policies, after making missing ones with --make, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.sim_to_rig", description=__doc__.partition("\n")[0])
     parser.add_argument("--make", action="store_true", help="first diagnose and train what is not there; stopped, it goes on")
     parser.add_argument("--count", type=int, default=20, help="episodes on each machine; 20 by default")

@@ -17,24 +17,24 @@ Interval = tuple[float, float, float]
 
 RESAMPLES = 2000
 LEVEL = 0.95
-#: Resamples are drawn so many at once, for speed within little memory.
+#: Number of resamples drawn at once, for speed within little memory.
 AT_ONCE = 200
 BATCHES = range(RESAMPLES // AT_ONCE)
 
 
 def mean_interval(values: Floats, seed: int = 0) -> Interval:
-    """Return the mean of values (arms,) and the ends of its 95 % bootstrap interval."""
+    """Compute the mean of values (arms,) and the ends of its 95 % bootstrap interval."""
     draws = np.random.default_rng(seed).integers(0, len(values), (RESAMPLES, len(values)))
     return with_ends(float(values.mean()), values[draws].mean(axis=1))
 
 
 def paired_difference(values: Floats, reference: Floats, seed: int = 0) -> Interval:
-    """Return the mean of values − reference, arm by arm (arms,), and the ends of its 95 % bootstrap interval."""
+    """Compute the mean of values − reference, arm by arm (arms,), and the ends of its 95 % bootstrap interval."""
     return mean_interval(values - reference, seed)
 
 
 def interquartile_mean(values: Floats) -> Floats:
-    """Return the mean of the middle half of values (…, values): a quarter is left out at each end."""
+    """Compute the mean of the middle half of values (…, values): a quarter is left out at each end."""
     ordered = np.sort(values, axis=-1)
     cut = ordered.shape[-1] // 4
     found: Floats = ordered[..., cut : ordered.shape[-1] - cut].mean(axis=-1)
@@ -44,7 +44,7 @@ def interquartile_mean(values: Floats) -> Floats:
 def stratified_interval(
     strata: Sequence[Floats], statistic: Callable[[Floats], Floats] = interquartile_mean, seed: int = 0
 ) -> Interval:
-    """Return a statistic of all values and the ends of its 95 % interval, runs and arms drawn again within each stratum.
+    """Compute a statistic of all values and the ends of its 95 % interval, with runs and arms resampled within each stratum.
 
     A run is drawn whole, with all its arms, and so is an arm, with all its runs: what one policy does on two arms, or two
     policies on one arm, is not independent. A controller is one run, which leaves the arms.
@@ -60,7 +60,7 @@ def stratified_interval(
 
 
 def improvement(values: Floats, reference: Floats, seed: int = 0) -> Interval:
-    """Return how probable it is that a run does better (less) than a reference on the same arm; ties count half.
+    """Estimate the probability that a run is better (less) than a reference on the same arm; ties count half.
 
     Args:
         values: (runs, arms).
@@ -75,12 +75,12 @@ def improvement(values: Floats, reference: Floats, seed: int = 0) -> Interval:
 
 
 def drawn_again(values: Floats, draw: np.random.Generator, times: int) -> Floats:
-    """Return values (runs, arms) with runs, and arms, drawn again (times, runs · arms)."""
+    """Resample runs and arms of values (runs, arms): (times, runs · arms)."""
     runs, arms = (draw.integers(0, size, (times, size)) for size in values.shape)
     return values[runs[:, :, None], arms[:, None, :]].reshape(times, -1)
 
 
 def with_ends(value: float, found: Floats) -> Interval:
-    """Return a value with the ends of its 95 % interval, from what resampling found (resamples,)."""
+    """Compute the ends of a value's 95 % interval from its resamples (resamples,)."""
     low, high = np.quantile(found, [0.5 - LEVEL / 2, 0.5 + LEVEL / 2])
     return value, float(low), float(high)

@@ -15,12 +15,12 @@ FOLDER = Path(__file__).resolve().parent.parent / "results" / "policies" / "weig
 
 
 def place_of(folder: Path, config: Path, seed: int) -> Path:
-    """Return where the policy of a configuration and seed lies."""
+    """Locate the policy of a configuration and seed."""
     return folder / f"{config.stem}-{seed}.safetensors"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Train what is not there yet, and return the exit code."""
+    """Train the missing policies, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.train", description=__doc__)
     parser.add_argument("configs", nargs="*", type=Path, metavar="CONFIG", help="TOML files, such as configs/agents/*.toml")
     parser.add_argument("--seeds", type=int, nargs="+", metavar="SEED", help="from 0 up, as many as the file says, by default")
@@ -50,8 +50,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def one_run(config: Path, plan: Plan, seed: int, folder: Path, tensorboard: Path | None) -> None:
-    """Train one policy and write it, unless it is there."""
-    # torch and Stable-Baselines3 take two seconds to import, which a misspelt option does not have to wait for
+    """Train one policy and write it, unless it exists."""
+    # torch and Stable-Baselines3 take two seconds to import; a misspelt option is reported before
     from agents.learning.run import train
 
     place = place_of(folder, config, seed)

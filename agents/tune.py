@@ -20,7 +20,7 @@ from agents.statistics import interquartile_mean
 from flexarm_env.errors import InputError
 from flexarm_env.tasks import TASKS
 
-#: What is searched: path in a plan, lowest and highest value; all on a logarithmic scale.
+#: Searched options: path in a plan, lowest and highest value; all on a logarithmic scale.
 RANGES = {
     "learning.learning_rate": (2e-4, 4e-3),
     "reward.vibration": (0.1, 3.0),
@@ -28,13 +28,13 @@ RANGES = {
     "reward.tip_scale": (0.05, 2.0),
     "reward.effort": (1e-3, 0.2),
 }
-#: Arms on which a trial is judged; their seeds are those of evaluation shifted, so that tuning sees none of its arms.
+#: Arms on which a trial is judged; their seeds are shifted from those of evaluation, so that tuning uses none of its arms.
 JUDGES = ArmSet("judges", "as randomised, other draws", payload=True, constants=0.1, friction=0.2)
 JUDGES_SEED, JUDGES_COUNT = 900_000_000, 50
 
 
 def changed(plan: Plan, values: Mapping[str, float]) -> Plan:
-    """Return a plan with the values at some paths replaced."""
+    """Replace the values at some paths of a plan."""
     table = plan.table()
     for path, value in values.items():
         section, key = path.split(".")
@@ -53,7 +53,7 @@ def score_of(plan: Plan, seed: int) -> float:
 
 
 def open_study(storage: Path, name: str) -> Any:
-    """Return the study of that name, new or as other processes and machines that share the file left it."""
+    """Open the study of a name: a new one, or one shared with other processes and machines through the file."""
     import optuna
     from optuna.storages import JournalStorage
     from optuna.storages.journal import JournalFileBackend
@@ -101,7 +101,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def changed_length(plan: Plan, actions: int) -> Plan:
-    """Return a plan with another number of actions."""
+    """Replace the number of actions of a plan."""
     return read_table(plan.table() | {"actions": actions})
 
 

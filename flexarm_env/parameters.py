@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 #: SI unit of each kind of command.
 INPUTS: dict[str, str] = {"current": "A", "voltage": "V"}
 #: Parts that an effect or a sensor may need of an arm, beside its input.
@@ -143,3 +145,8 @@ SENSOR = {
     "position": Parameter("m", 0.0, 1e2, 0.0, spread=0.0, meaning="of a strain gage along the beam"),
     "per_volt": Parameter("", -1e6, 1e6, 0.0, spread=0.0, meaning="quantity per volt of a recording in volts; 0: not stated"),
 }
+
+
+def reading_noise(sensor: Mapping[str, float]) -> float:
+    """Compute the standard deviation of a sensor's reading in its own unit: its noise, and the rounding to its steps."""
+    return float(np.hypot(sensor["noise"], sensor["resolution"] / 12**0.5))

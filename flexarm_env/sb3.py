@@ -1,4 +1,4 @@
-"""The vector environment as Stable-Baselines3 expects it."""
+"""The vector environment as a VecEnv of Stable-Baselines3."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
-from flexarm_env.env.kernel import SAMPLE
+from flexarm_env.env.layout import SAMPLE
 from flexarm_env.vector_env import FlexArmVectorEnv
 
 Array = NDArray[Any]
 
 
 def make_vec(id: str, num_envs: int = 1, seed: int | None = None, **arguments: Any) -> FlexArmVecEnv:
-    """Return arms for Stable-Baselines3's algorithms to train on.
+    """Make arms for Stable-Baselines3's algorithms to train on.
 
     Args:
         id: of the environment.
@@ -29,6 +29,12 @@ def make_vec(id: str, num_envs: int = 1, seed: int | None = None, **arguments: A
 
     Raises:
         InputError: for arguments that do not exist or do not make sense.
+
+    Examples:
+        >>> vec = make_vec("FlexArm/Slew-v0", 8, seed=0)
+        >>> vec.reset().shape
+        (8, 5)
+        >>> vec.close()
     """
     made = gym.make_vec(
         id, num_envs, vectorization_mode="vector_entry_point", autoreset_mode=AutoresetMode.SAME_STEP, **arguments
@@ -43,8 +49,8 @@ def make_vec(id: str, num_envs: int = 1, seed: int | None = None, **arguments: A
 class FlexArmVecEnv(VecEnv):
     """A FlexArmVectorEnv that starts the next episode in the step that ends one.
 
-    An info is empty but for the arm's last sample of an episode, which has `terminal_observation`, `TimeLimit.truncated`
-    and the `episode` statistics that SB3 logs. The truth is in `envs.batch.info()`, for all arms at once.
+    Infos are empty except at the end of an episode: there they hold `terminal_observation`, `TimeLimit.truncated` and the
+    `episode` statistics that SB3 logs. `envs.batch.info()` has the true state of all arms at once.
     """
 
     def __init__(self, envs: FlexArmVectorEnv) -> None:
@@ -68,11 +74,11 @@ class FlexArmVecEnv(VecEnv):
         return observations
 
     def step_async(self, actions: Array) -> None:
-        """Take the actions (arms, 1) of the next step."""
+        """Set the actions (arms, 1) of the next step."""
         self.actions = actions
 
     def step_wait(self) -> tuple[Array, Array, Array, list[dict[str, Any]]]:
-        """Apply them; return observations, rewards, whether an episode is over, and infos."""
+        """Apply the actions; return observations, rewards, ends of episodes, and infos."""
         envs = self.envs
         rewards, terminated, truncated = envs.move(self.actions)
         done, last = envs.over, envs.batch.observations
@@ -83,14 +89,14 @@ class FlexArmVecEnv(VecEnv):
             infos[i] = {
                 "terminal_observation": last[i].copy(),
                 "TimeLimit.truncated": bool(truncated[i] and not terminated[i]),
-                "episode": {"r": float(self.returns[i]), "l": int(envs.batch.told[SAMPLE, i]), "t": elapsed},
+                "episode": {"r": float(self.returns[i]), "l": int(envs.batch.outcome[SAMPLE, i]), "t": elapsed},
             }
             self.returns[i] = 0.0
         envs.restart()
         return last.copy(), rewards.astype(np.float32), done, infos
 
     def close(self) -> None:
-        """Let the arms go."""
+        """Close the arms' environment."""
         self.envs.close()
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
@@ -107,9 +113,9 @@ class FlexArmVecEnv(VecEnv):
         return [getattr(self.envs, method_name)(i, *args, **kwargs) for i in self._get_indices(indices)]
 
     def env_is_wrapped(self, wrapper_class: type, indices: Any = None) -> list[bool]:
-        """Return False for each arm: nothing is wrapped; episodes are counted without a Monitor."""
+        """Return False for each arm: there are no wrappers, and episodes are counted without a Monitor."""
         return [False for _ in self._get_indices(indices)]
 
     def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
-        """Return nothing for each arm: look at a single environment."""
+        """Return None for each arm: single environments draw pictures."""
         return [None] * self.num_envs

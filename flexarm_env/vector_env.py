@@ -1,10 +1,10 @@
-"""Many arms in one environment, on the kernel of the single one: the same bits, thousands of times a step."""
+"""Many arms in one environment, on the kernel of the single one: the same bits for each arm."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from pathlib import Path
-from typing import Any
+from collections.abc import Sequence
+from functools import cache
+from typing import Any, Unpack
 
 import gymnasium as gym
 import numpy as np
@@ -13,73 +13,72 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.env.batch import INFO_NAMES, Batch
-from flexarm_env.env.flexarm import ARGUMENTS, find_arm, make_setup, refuse_unknown, spaces_of
-from flexarm_env.env.kernel import REWARD, SAMPLE, TERMINATED
-from flexarm_env.env.variation import Disturbance, Range
+from flexarm_env.env.arguments import ArmLike, EnvArguments, find_prior, make_setup
+from flexarm_env.env.batch import Batch
+from flexarm_env.env.flexarm import spaces_of
+from flexarm_env.env.layout import REWARD, SAMPLE, TERMINATED
+from flexarm_env.env.task_envs import refuse_task
 from flexarm_env.errors import InputError
-from flexarm_env.tasks import Task
+from flexarm_env.tasks import TASKS, Task
 
 Array = NDArray[Any]
 
-#: Names under which an info says of which arms it tells, see gymnasium.vector.VectorEnv.
-PRESENT = tuple(f"_{name}" for name in INFO_NAMES)
-VECTOR_ARGUMENTS = (*ARGUMENTS, "num_envs", "max_episode_steps", "autoreset_mode", "threads")
+FURTHER_ARGUMENTS = ("num_envs", "max_episode_steps", "autoreset_mode", "threads")
+#: Tasks by the names of their vector environments, such as "SlewVectorEnv".
+TASK_OF_CLASS = {f"{task.title}VectorEnv": task for task in TASKS.values()}
 
 
 class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
-    """Arms at one task; arm i after reset(seed=s) is what the single environment is after reset(seed=s + i), bit for bit.
+    """Arms at one task; arm i after reset(seed=s) is the single environment after reset(seed=s + i), bit for bit.
 
     Args:
         num_envs: arms.
         task: its name, or a Task.
         arm: name of a shipped arm, path of an arm file, or an Arm.
-        prior: the arm that a controller believes in.
-        randomise: as in FlexArmEnv, drawn for each arm and episode.
-        vary: as in FlexArmEnv.
-        disturb: as in FlexArmEnv.
-        control_rate: steps per second [Hz].
-        physical: observations in SI units, not normalised.
         max_episode_steps: after which an episode is truncated; the task's duration by default.
-        autoreset_mode: what happens to an arm whose episode is over, see gymnasium.vector.AutoresetMode.
+        autoreset_mode: next step, same step or disabled, see gymnasium.vector.AutoresetMode.
         threads: over which the arms are spread; more than one pays from some hundred arms on.
-        render_mode: only None: look at a single environment.
+        render_mode: only None; single environments draw pictures.
+        arguments: prior, randomise, vary, disturb, control_rate, physical: see EnvArguments; drawn for each arm and episode.
 
     Raises:
         InputError: for an argument that does not exist or does not make sense.
+
+    Examples:
+        >>> envs = FlexArmVectorEnv(64, "track", randomise={"payload.mass": (0.0, 0.3)})
+        >>> observations, infos = envs.reset(seed=0)
+        >>> observations, rewards, terminated, truncated, infos = envs.step(np.zeros((64, 1), dtype=np.float32))
+        >>> observations.shape, rewards.shape, infos["reward_distance"].shape
+        ((64, 5), (64,), (64,))
+        >>> envs.close()
     """
 
     def __init__(
         self,
         num_envs: int = 1,
         task: str | Task = "slew",
-        arm: str | Path | Arm = "thesis",
+        arm: ArmLike = "thesis",
         *,
-        prior: str | Path | Arm | None = None,
-        randomise: Mapping[str, Range] | None = None,
-        vary: Mapping[str, float] | None = None,
-        disturb: Disturbance | Mapping[str, float] | None = None,
-        control_rate: float = 200.0,
-        physical: bool = False,
         max_episode_steps: int | None = None,
         autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
         threads: int = 1,
         render_mode: str | None = None,
-        **unknown: Any,
+        **arguments: Unpack[EnvArguments],
     ) -> None:
-        refuse_unknown(unknown, VECTOR_ARGUMENTS)
         for name, value in (("num_envs", num_envs), ("threads", threads), ("max_episode_steps", max_episode_steps)):
             if value is not None and not (isinstance(value, int | np.integer) and value >= 1):
                 raise InputError(f"{name} = {value!r}; give a whole number from 1 up")
         if render_mode is not None:
             raise InputError("render_mode: a vector environment draws nothing; use gymnasium.make for pictures")
-        self.setup = make_setup(task, arm, randomise, vary, disturb, control_rate, physical)
-        self.prior = find_arm(arm if prior is None else prior)
+        self.setup = make_setup(task, arm, arguments, FURTHER_ARGUMENTS)
+        self.prior = find_prior(arm, arguments)
         self.autoreset_mode = _mode(autoreset_mode)
         self.metadata = {"autoreset_mode": self.autoreset_mode, "render_modes": []}
         self.num_envs, self.render_mode = int(num_envs), None
         self.max_episode_steps = max_episode_steps or self.setup.samples
         self.batch = Batch(self.setup, self.num_envs, int(threads))
+        #: Names under which an info marks the arms that it is about, see gymnasium.vector.VectorEnv.
+        self.present = tuple(f"_{name}" for name in self.batch.info_rows)
         self.single_observation_space, self.single_action_space = spaces_of(self.setup)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
@@ -132,7 +131,7 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         """Apply the commands actions · limit (arms, 1) for one sample.
 
         Raises:
-            gymnasium.error.ResetNeeded: before the first reset, or for arms whose episode is over and that wait for a reset.
+            gymnasium.error.ResetNeeded: before the first reset, or for arms after the end of their episode that need a reset.
             InputError: for actions of another shape, or that are not numbers.
         """
         before = self.over
@@ -164,18 +163,18 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
                 f"actions of shape {shape}; give one number from -1 to 1 for each arm, in shape ({self.num_envs}, 1)"
             )
         values = np.ascontiguousarray(actions).reshape(-1)
-        arm = batch.ask(values if values.dtype == np.float32 else values.astype(np.float64))
+        arm = batch.request(values if values.dtype == np.float32 else values.astype(np.float64))
         if arm >= 0:
             raise InputError(f"action of arm {arm} = {actions[arm][0]}; give numbers from -1 to 1")
         batch.step()
-        rewards = batch.told[REWARD].copy()
-        terminated = batch.told[TERMINATED] > 0.0
-        truncated = batch.told[SAMPLE] >= self.max_episode_steps
+        rewards = batch.outcome[REWARD].copy()
+        terminated = batch.outcome[TERMINATED] > 0.0
+        truncated = batch.outcome[SAMPLE] >= self.max_episode_steps
         self.over = terminated | truncated
         return rewards, terminated, truncated
 
     def restart(self) -> None:
-        """Start the next episode of every arm whose episode is over."""
+        """Start the next episode of every arm at the end of one."""
         self.batch.reset(self.every[self.over])
         self.over = np.zeros(self.num_envs, dtype=bool)
 
@@ -195,15 +194,15 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         if mask is not self.all:
             for values in info.values():
                 values[~mask] = 0
-        info.update(dict.fromkeys(PRESENT, mask.copy()))
+        info.update(dict.fromkeys(self.present, mask.copy()))
         return info
 
     def drawn_arm(self, arm: int) -> Arm:
-        """Return arm number `arm` as it was drawn for its episode."""
+        """Return the machine that was drawn for the episode of arm number `arm`."""
         return self.batch.arm_of(arm)
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Let the threads go."""
+        """Dismiss the threads."""
         self.batch.close()
 
 
@@ -214,16 +213,20 @@ def _mode(given: str | AutoresetMode) -> AutoresetMode:
     raise InputError(f"autoreset_mode = {given!r}; allowed: {', '.join(mode.value for mode in AutoresetMode)}")
 
 
-def slew_vector(num_envs: int = 1, **arguments: Any) -> FlexArmVectorEnv:
-    """Return arms at the task slew, for gymnasium.make_vec."""
-    return FlexArmVectorEnv(num_envs, "slew", **arguments)
+@cache
+def _task_class(name: str) -> type[FlexArmVectorEnv]:
+    """Make the vector environment of a registered task, by the name of the class."""
+    task = TASK_OF_CLASS[name]
+
+    def __init__(self: FlexArmVectorEnv, num_envs: int = 1, arm: ArmLike = "thesis", **arguments: Any) -> None:
+        refuse_task(task, arguments)
+        FlexArmVectorEnv.__init__(self, num_envs, task, arm, **arguments)
+
+    page = f"Many arms at the task {task.name}; see {task.title}Env and FlexArmVectorEnv."
+    return type(name, (FlexArmVectorEnv,), {"__init__": __init__, "__doc__": page, "__module__": __name__})
 
 
-def track_vector(num_envs: int = 1, **arguments: Any) -> FlexArmVectorEnv:
-    """Return arms at the task track, for gymnasium.make_vec."""
-    return FlexArmVectorEnv(num_envs, "track", **arguments)
-
-
-def damp_vector(num_envs: int = 1, **arguments: Any) -> FlexArmVectorEnv:
-    """Return arms at the task damp, for gymnasium.make_vec."""
-    return FlexArmVectorEnv(num_envs, "damp", **arguments)
+def __getattr__(name: str) -> Any:
+    if name not in TASK_OF_CLASS:
+        raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+    return _task_class(name)

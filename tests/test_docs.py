@@ -211,6 +211,16 @@ def test_readme_names_every_shipped_arm():
     assert set(column("Arms")) == set(shipped_arms())
 
 
+def test_environments_describes_tasks_as_they_are():
+    from flexarm_env.tasks import TASKS
+
+    rows = {f"| `FlexArm/{task.title}-v0` | {task.summary} | {task.duration:g} s |" for task in TASKS.values()}
+    text = (PROJECT / "docs" / "environments.md").read_text(encoding="utf-8")
+    written = re.findall(r"^\| `FlexArm/.*$", text, re.MULTILINE)
+    assert len(written) >= 3
+    assert set(written) <= rows
+
+
 def test_readme_is_short():
     assert len(README.read_text(encoding="utf-8").splitlines()) <= 160
 

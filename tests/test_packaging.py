@@ -24,8 +24,8 @@ HEAVY = {"torch", "stable_baselines3", "sb3_contrib", "plotly", "matplotlib", "p
 # A module imports from its own layer and those above it in this list.
 LAYERS = (
     {"errors"},
-    {"units", "parameters", "files", "display"},
-    {"arm", "arm_file", "plant", "effects", "sensors", "linear", "recordings"},
+    {"units", "parameters", "files", "generated", "display"},
+    {"arm", "arm_file", "plant", "effects", "sensors", "linear", "recordings", "thesis_drive"},
     {"experiments"},
     {"identify", "controllers", "tasks", "render", "env"},
     {"vector_env", "sb3", "pictures", "registration"},

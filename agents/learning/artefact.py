@@ -1,4 +1,4 @@
-"""A trained policy in one file: weights, what it saw and did, its arm, its run. Loading one runs no code of it."""
+"""A trained policy in one file: weights, interface, arm, run. Loading one runs no code of it."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ class Artefact:
 
     Attributes:
         plan: by which it was trained, its task and interface in it.
-        arm: that its filters and its base controller believe in.
-        weights: of what acts, without the critic.
+        arm: modelled by its filters and its base controller.
+        weights: of the acting networks, without the critic.
         run: seed, version, commit, actions, seconds, curve: [[actions, mean return of an episode], …].
     """
 
@@ -77,7 +77,7 @@ class Artefact:
             raise InputError(f"{path} is no policy ({error}); python -m agents.train makes one") from None
 
     def agent(self) -> LearnedPolicy:
-        """Return the policy, ready to drive arms.
+        """Build the policy, ready to drive arms.
 
         Raises:
             InputError: where the weights do not fit the plan.
@@ -95,12 +95,12 @@ class Artefact:
 
 
 def acting_weights(policy: BasePolicy) -> dict[str, torch.Tensor]:
-    """Return the weights that acting needs."""
+    """Select the weights that acting needs."""
     return {name: value for name, value in policy.state_dict().items() if not name.startswith(TRAINING_ONLY)}
 
 
 class LearnedPolicy:
-    """Drives arms, one or many: what agents/rollout.py asks of an agent.
+    """Drives arms, one or many: an Agent of agents/rollout.py.
 
     Args:
         policy: of Stable-Baselines3 or sb3-contrib, its critic untrained.
@@ -121,7 +121,7 @@ class LearnedPolicy:
         self.held = np.zeros((width, self.interface.options.actions), dtype=np.float32)
 
     def action(self, observation: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
-        """Return shares of the limit (…, 1) for physical observations (…, signals + 1); … is nothing or the count."""
+        """Compute shares of the limit (…, 1) for physical observations (…, signals + 1); … is nothing or the count."""
         self.interface.see(np.asarray(observation)[None] if self.alone else observation)
         if self.interface.sample % self.interface.options.repeat == 0:
             seen = self.interface.features()

@@ -1,4 +1,4 @@
-"""The state of a run between two batches of episodes, from which it goes on bit for bit."""
+"""The state of a run between two batches of episodes, from which it continues bit for bit."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from flexarm_env.files import write_whole
 
 
 def write_checkpoint(path: Path, model: BaseAlgorithm, env: EpisodeVecEnv, run: dict[str, Any]) -> None:
-    """Write weights, optimisers, random numbers and which episode is next; a replay buffer is left out."""
+    """Write weights, optimisers, random numbers and the number of the next episode; a replay buffer is left out."""
     _, places, position, spare, normal = np.random.get_state()  # noqa: NPY002
     state = {
         "run": run,
@@ -38,7 +38,7 @@ def write_checkpoint(path: Path, model: BaseAlgorithm, env: EpisodeVecEnv, run: 
 
 
 def read_checkpoint(path: Path) -> dict[str, Any]:
-    """Return what write_checkpoint wrote; tensors and plain values only, so that reading one runs no code.
+    """Read a checkpoint of write_checkpoint; tensors and plain values only, so that reading runs no code.
 
     Raises:
         InputError: for a file that is no checkpoint.
@@ -55,14 +55,14 @@ def read_checkpoint(path: Path) -> dict[str, Any]:
 
 
 def restore(state: dict[str, Any], model: BaseAlgorithm, env: EpisodeVecEnv) -> None:
-    """Put a model and its arms where they were; random numbers are set by restore_randomness, last of all."""
+    """Restore a model and its arms; random numbers are restored by restore_randomness, last of all."""
     model.set_parameters(state["parts"], exact_match=True, device="cpu")
     for name in _loose(model):
         getattr(model, name).data = state["extra"][name]
     model.num_timesteps, model._n_updates = state["actions"], state["updates"]
     env.next_episode = state["episode"]
     if isinstance(model, OffPolicyAlgorithm):
-        # what was remembered is gone: act until as much is there as before the first update
+        # the replay buffer is empty: act until it holds as much as before the first update
         model.learning_starts += model.num_timesteps
 
 
@@ -74,5 +74,5 @@ def restore_randomness(state: dict[str, Any]) -> None:
 
 
 def _loose(model: BaseAlgorithm) -> list[str]:
-    """Names of the tensors that stand beside the model's networks."""
+    """List the tensors beside the model's networks."""
     return [name for name in model._get_torch_save_params()[1] if getattr(model, name, None) is not None]

@@ -1,4 +1,4 @@
-"""Arms at a task as Stable-Baselines3 sees them: features in, actions out, all episodes starting and ending together."""
+"""Arms at a task as a VecEnv of Stable-Baselines3: features in, actions out, with all episodes in step."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ from flexarm_env.vector_env import FlexArmVectorEnv
 Array = NDArray[Any]
 
 RATE = 200.0
-#: Seeds of training stay below those of evaluation, each run's apart from the others'.
+#: Seeds of each run: those of training stay below those of evaluation, and no two runs share any.
 SEEDS_EACH = 10_000_000
-#: As FINE in interface.py, for what the critic alone sees: angle's error [rad], speed [rad/s], tip [m], its change [m].
+#: As FINE in interface.py, for the critic's privileged inputs: angle's error [rad], speed [rad/s], tip [m], its change [m].
 FINE_TRUTH = (0.003, 0.03, 0.001, 0.0001)
 
 
 class EpisodeVecEnv(VecEnv):
-    """Many arms whose episodes all last as long, so that filters and controllers can be reset for all at once.
+    """Many arms with episodes of equal length, so that filters and controllers are reset for all at once.
 
     Arms do not leave their range here, where evaluation would end their episode. Arm i of episode k of a run with seed s
     is drawn from the seed s · 10⁷ + k · arms + i.
 
     Args:
         plan: task, arms, interface, reward.
-        arm: that is moved, and that the interface believes in.
+        arm: simulated, and modelled by the interface.
         seed: of the run.
     """
 
@@ -53,14 +53,14 @@ class EpisodeVecEnv(VecEnv):
         self.actions_in_all = plan.actions
         self.privileged = plan.interface.privileged and plan.algorithm == "ppo"
         self.first_seed, self.next_episode = seed * SEEDS_EACH, 0
-        #: Of the episodes that ended last, over all arms; None before there are any.
+        #: Mean over all arms of the last episodes' returns; None before the first end.
         self.mean_return: float | None = None
         ranges = len(self.envs.setup.variation.ranges)
         self.width = self.interface.size + (len(FINE_TRUTH) + ranges if self.privileged else 0)
         super().__init__(plan.at_once, *spaces_of(self.width, plan.interface.actions))
 
     def reset(self) -> Array:
-        """Start the next episode of all arms; return what policy and critic see (arms, width)."""
+        """Start the next episode of all arms; return the inputs of policy and critic (arms, width)."""
         count, batch = self.num_envs, self.envs.batch
         first = self.first_seed + self.next_episode * count % SEEDS_EACH
         share = min(self.next_episode * count * self.steps / self.actions_in_all, 1.0)
@@ -75,11 +75,11 @@ class EpisodeVecEnv(VecEnv):
         return self._observe()
 
     def step_async(self, actions: Array) -> None:
-        """Take the actions (arms, 1 or 2) of the next step."""
+        """Set the actions (arms, 1 or 2) of the next step."""
         self.actions = actions
 
     def step_wait(self) -> tuple[Array, Array, Array, list[dict[str, Any]]]:
-        """Hold them for `repeat` samples; return observations, rewards, whether episodes are over, and infos."""
+        """Hold the actions for `repeat` samples; return observations, rewards, ends of episodes, and infos."""
         rewards = np.zeros(self.num_envs)
         for _ in range(self.repeat):
             self.envs.move(self.interface.send(self.actions))
@@ -109,7 +109,7 @@ class EpisodeVecEnv(VecEnv):
         return np.concatenate([seen, *hidden, self.draws], axis=1, dtype=np.float32)
 
     def close(self) -> None:
-        """Let the arms go."""
+        """Close the arms' environment."""
         self.envs.close()
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
@@ -125,25 +125,25 @@ class EpisodeVecEnv(VecEnv):
         return [getattr(self, method_name)(*args, **kwargs) for _ in self._get_indices(indices)]
 
     def env_is_wrapped(self, wrapper_class: type, indices: Any = None) -> list[bool]:
-        """Return False for each arm: nothing is wrapped."""
+        """Return False for each arm: there are no wrappers."""
         return [False for _ in self._get_indices(indices)]
 
     def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
-        """Return nothing for each arm: look at a single environment."""
+        """Return None for each arm: single environments draw pictures."""
         return [None] * self.num_envs
 
 
 def spaces_of(width: int, actions: int) -> tuple[spaces.Box[Any], spaces.Box[Any]]:
-    """Return the spaces of what policy and critic see (width,) and of actions (actions,)."""
+    """Make the spaces of the inputs of policy and critic (width,) and of actions (actions,)."""
     return spaces.Box(-np.inf, np.inf, (width,), np.float32), spaces.Box(-1.0, 1.0, (actions,), np.float32)
 
 
 def actions_each(task: Task, repeat: int) -> int:
-    """Return how many actions an episode has."""
+    """Count the actions of an episode."""
     return max(round(task.duration * RATE) // repeat, 1)
 
 
 def training_set(options: ArmsOptions) -> ArmSet:
-    """Return the set that training draws its arms from; beside it those of agents/sets.py, which are for evaluation."""
+    """Make the set of arms for training; those of agents/sets.py are for evaluation."""
     disturb = {"tap_rate": options.tap_rate, "dropout_rate": options.dropout_rate}
     return ArmSet("training", "arms to train on", options.payload, options.constants, options.friction, disturb)

@@ -1,4 +1,4 @@
-"""What a policy sees and what its output does: readings, filters and a classical controller in, commands out."""
+"""Inputs and outputs of a policy: readings, filters and a classical controller in, commands out."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from flexarm_env.controllers.payload import PayloadEstimator
 
 Floats = NDArray[np.float64]
 
-#: Below these sizes a feature is nearly linear, above it grows with the logarithm: a policy has to see 0.1° and 100°.
+#: Below these sizes a feature is nearly linear, above it grows with the logarithm: 0.1° and 100° both have to be resolved.
 FINE = {"arm_angle": 0.01, "motor_speed": 0.1, "strain_mid": 0.02, "strain_base": 0.02, "tip_deflection": 0.001}
 #: The same of another signal, over its typical reading.
 FINE_SHARE = 0.01
@@ -28,7 +28,7 @@ PAYLOAD_SCALE = 0.15
 
 
 def squeezed(value: Floats, fine: float) -> Floats:
-    """Return asinh(value / fine) over the common spread."""
+    """Compute asinh(value / fine) over the common spread."""
     squeezed: Floats = np.arcsinh(value / fine) / SPREAD
     return squeezed
 
@@ -37,8 +37,8 @@ class PolicyInterface:
     """Between a policy and many arms, at every sample: `see` readings, `features` for the policy, `send` its action.
 
     Args:
-        options: what is shown and how actions act.
-        arm: that the policy's filters and its base controller believe in.
+        options: features, and effect of the actions.
+        arm: modelled by the policy's filters and its base controller.
         interval: control period [s].
 
     Raises:
@@ -52,7 +52,7 @@ class PolicyInterface:
         self.loads = KnownLoads(arm)
         self.estimator = Estimator(arm, interval) if options.estimate else None
         self.weigher = PayloadEstimator(arm, interval) if options.estimate else None
-        #: What an average takes over of each new reading (averages, 1, 1).
+        #: Weight of each new reading in an average (averages, 1, 1).
         self.fresh = 1.0 - np.exp(-interval / np.array(options.averages).reshape(-1, 1, 1))
         self.depth = max([*options.lags, *options.command_lags], default=0) + 1
         self.fine = np.array([FINE.get(signal, FINE_SHARE * arm.sensor(signal).typical) for signal in self.signals])
@@ -77,7 +77,7 @@ class PolicyInterface:
             self.state, self.payload = self.estimator.state, self.weigher.payload
 
     def see(self, observation: NDArray[np.floating[Any]]) -> None:
-        """Take in physical observations (count, signals + 1) of a sample."""
+        """Update by physical observations (count, signals + 1) of a sample."""
         seen = np.asarray(observation, dtype=np.float64)
         self.sample += 1
         here = self.sample % self.depth
@@ -92,7 +92,7 @@ class PolicyInterface:
             self.payload = self.weigher.update(seen[:, :-1])
 
     def features(self) -> NDArray[np.float32]:
-        """Return what the policy sees now (count, size)."""
+        """Compute the policy's features (count, size)."""
         here, options = self.sample % self.depth, self.options
         found = []
         for shown in [*(self.readings[(here - lag) % self.depth] for lag in options.lags), *self.averages]:
@@ -118,7 +118,7 @@ class PolicyInterface:
         return [*columns, (self.payload / PAYLOAD_SCALE)[:, None]]
 
     def send(self, action: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
-        """Return the shares of the limit (count, 1) that an action (count, 1 or 2) means at this sample."""
+        """Convert an action (count, 1 or 2) to shares of the limit (count, 1) at this sample."""
         options = self.options
         self.last = np.clip(np.asarray(action, dtype=np.float64), -1.0, 1.0)
         added = options.authority * self.last[:, 0]

@@ -24,13 +24,13 @@ POLICIES: dict[str, type[BasePolicy]] = {
     "sac": SACPolicy,
     "tqc": TQCPolicy,
 }
-#: Parts of a policy's weights that training alone needs, by the beginning of their names.
+#: Beginnings of the names of weights that only training needs.
 TRAINING_ONLY = ("mlp_extractor.value_net.", "value_net.", "lstm_critic.", "critic.", "critic_target.")
 ON_POLICY = ("ppo", "recurrent_ppo")
 
 
 def make_model(plan: Plan, env: EpisodeVecEnv, seed: int) -> BaseAlgorithm:
-    """Return an algorithm that is ready to learn on CPU.
+    """Build an algorithm that is ready to learn on CPU.
 
     On-policy algorithms update after whole episodes of all arms, so that a run can be taken up again between two of them.
     """
@@ -67,7 +67,7 @@ def make_model(plan: Plan, env: EpisodeVecEnv, seed: int) -> BaseAlgorithm:
 
 
 def policy_arguments(plan: Plan, visible: int) -> dict[str, Any]:
-    """Return the arguments of the algorithm's policy class, beside its spaces."""
+    """Make the arguments of the algorithm's policy class, beside its spaces."""
     network = plan.network
     arguments: dict[str, Any] = {"net_arch": list(network.layers), "activation_fn": ACTIVATIONS[network.activation]}
     if plan.algorithm in ON_POLICY:
@@ -80,6 +80,6 @@ def policy_arguments(plan: Plan, visible: int) -> dict[str, Any]:
 
 
 def bare_policy(plan: Plan, visible: int) -> BasePolicy:
-    """Return an untrained policy that sees `visible` features, for weights to be put into."""
+    """Build an untrained policy with `visible` features, to be loaded with weights."""
     seen, action = spaces_of(visible, plan.interface.actions)
     return POLICIES[plan.algorithm](seen, action, lambda _: 0.0, **policy_arguments(plan, visible))

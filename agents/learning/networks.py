@@ -1,4 +1,4 @@
-"""A policy whose critic sees more than it does."""
+"""A policy with a privileged critic."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LEAST_LOG_STD, MOST_LOG_STD = -5.0, 1.0
 
 
 class TwoViews(MlpExtractor):
-    """Networks of a policy that sees the first `visible` features, and of a critic that sees all of them."""
+    """Networks of a policy with the first `visible` features as inputs, and of a critic with all of them."""
 
     def __init__(self, visible: int, width: int, layers: list[int], activation: type[torch.nn.Module]) -> None:
         super().__init__(visible, {"pi": layers, "vf": []}, activation)
@@ -22,17 +22,17 @@ class TwoViews(MlpExtractor):
         self.visible, self.value_net, self.latent_dim_vf = visible, critic.value_net, critic.latent_dim_vf
 
     def forward_actor(self, features: torch.Tensor) -> torch.Tensor:
-        """Return what the policy's last layer works on."""
+        """Compute the inputs of the policy's last layer."""
         return self.policy_net(features[:, : self.visible])
 
 
 class TwoViewPolicy(ActorCriticPolicy):
-    """Actor and critic of PPO, where the critic also sees what only a simulator knows (Pinto et al., RSS 2018).
+    """Actor and critic of PPO, where the critic has a simulator's privileged inputs, too (Pinto et al., RSS 2018).
 
     Actions are normal, with one standard deviation for all states, or with one of their own in each.
 
     Args:
-        visible: features that the actor sees; the rest is for the critic.
+        visible: number of the actor's features; the rest is for the critic.
         own_spread: whether the standard deviation depends on the state.
         arguments: of ActorCriticPolicy.
         options: of ActorCriticPolicy.

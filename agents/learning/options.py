@@ -1,4 +1,4 @@
-"""What a training run is made of: every option with its default, its meaning and what it may be."""
+"""Options of a training run: each with its default, its meaning and its bounds."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ ALGORITHMS = ("ppo", "recurrent_ppo", "sac", "tqc")
 
 
 def option(default: Any, meaning: str, least: float = -math.inf, most: float = math.inf, allowed: Any = None) -> Any:
-    """Return a field of a section: its default, its meaning for a person, and what it may be."""
+    """Make a field of a section: its default, its meaning for a person, and its bounds."""
     return field(default=default, metadata={"meaning": meaning, "least": least, "most": most, "allowed": allowed})
 
 
 @dataclass(frozen=True)
 class ArmsOptions:
-    """The arms that training sees, drawn anew for each episode; the nominal arm alone where all are 0."""
+    """The arms of training, drawn anew for each episode; the nominal arm alone where all are 0."""
 
     payload: bool = option(True, "whether a tip mass of 0 to 0.3 kg is drawn")
     constants: float = option(0.1, "share by which torque constant, inertia, mass and stiffness differ", 0.0, 0.9)
@@ -30,7 +30,7 @@ class ArmsOptions:
 
 @dataclass(frozen=True)
 class InterfaceOptions:
-    """What the policy sees and what its action does."""
+    """Features of the policy and effect of its action."""
 
     lags: tuple[int, ...] = option((0, 2, 4, 8, 16, 32), "how many samples of 5 ms ago the shown readings are", 0, 2000)
     command_lags: tuple[int, ...] = option((0, 2, 4, 8), "how many samples of 5 ms ago the shown commands were sent", 0, 2000)
@@ -46,13 +46,13 @@ class InterfaceOptions:
 
     @property
     def actions(self) -> int:
-        """How many numbers an action has."""
+        """Count the numbers of an action."""
         return 2 if self.pulse else 1
 
 
 @dataclass(frozen=True)
 class RewardOptions:
-    """What training rewards; evaluation measures something else, and does not see this.
+    """Reward of training; evaluation has measures of its own.
 
     Each sample costs the tip's error and the vibration, both on a scale where halving them is worth the same whether they
     are large or small: log(1 + size / scale), over that of 100° or 3 V. The vibration's size is that of the strain now and an
@@ -87,7 +87,7 @@ class NetworkOptions:
 
 @dataclass(frozen=True)
 class LearningOptions:
-    """How the algorithm learns. What an algorithm does not use is left alone."""
+    """Settings of the algorithm. Each algorithm ignores those of the others."""
 
     learning_rate: float = option(1e-3, "at the start", 1e-8, 1.0)
     last_learning_rate: float = option(2e-5, "at the end; linear between", 0.0, 1.0)
@@ -120,5 +120,5 @@ class Plan:
     learning: LearningOptions = field(default_factory=LearningOptions)
 
     def table(self) -> dict[str, Any]:
-        """Return the plan as tables that plan_file.read_table understands."""
+        """Convert the plan to tables for plan_file.read_table."""
         return asdict(self)

@@ -36,7 +36,7 @@ def read_plan(path: Path) -> Plan:
 
 
 def read_table(table: Mapping[str, Any]) -> Plan:
-    """Return the plan of a table as TOML or JSON give it.
+    """Convert a table of TOML or JSON to a plan.
 
     Raises:
         InputError: for a key that does not exist, or a value that is none.
@@ -61,7 +61,7 @@ def _read(section: type[Section], table: Any, prefix: str) -> Section:
 
 
 def _value(path: str, value: Any, default: Any, rules: Mapping[str, Any]) -> Any:
-    """Return a value in the type of its default."""
+    """Convert a value to the type of its default."""
     if isinstance(default, tuple):
         if not isinstance(value, list | tuple):
             raise InputError(f"{path} = {value!r}; give a list such as {list(default)}")
@@ -89,7 +89,7 @@ def _number(path: str, value: Any, default: float, rules: Mapping[str, Any]) -> 
 
 
 def option_table() -> str:
-    """Return all options as Markdown: name, default, meaning."""
+    """List all options in Markdown: name, default, meaning."""
     lines = ["| option | default | |", "|---|---|---|"]
     for entry in fields(Plan):
         section = getattr(Plan(), entry.name)

@@ -1,4 +1,4 @@
-"""What training rewards, from the truth that a simulator knows and no policy sees."""
+"""Reward of training, from the simulator's true state, which is hidden from the policy."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from flexarm_env.vector_env import FlexArmVectorEnv
 
 Floats = NDArray[np.float64]
 
-#: Frequency [Hz] of which the strain a quarter of a period before counts beside that of now: about that of the stuck arm.
+#: Frequency [Hz], about that of the stuck arm: the strain a quarter of its period ago is combined with the present one.
 BEAM_FREQUENCY = 2.0
 #: Sizes at which the logarithmic costs are 1 [deg, V].
 WHOLE_ERROR, WHOLE_STRAIN = 100.0, 3.0
@@ -33,15 +33,15 @@ class TrainingReward:
         self.quarter = max(round(envs.setup.rate / (4.0 * BEAM_FREQUENCY)), 1)
 
     def start(self, share: float) -> None:
-        """Begin an episode of every arm, when that share of the training is over."""
-        # at full weight from the start, a policy learns to stay away from where vibration costs
+        """Begin an episode of every arm, at a share of the training from 0 to 1."""
+        # at full weight from the start, a policy learns to avoid regions of costly vibration
         self.vibration = self.options.vibration * (1.0 + share * (self.options.rise - 1.0))
         self.strains = np.tile(self._strain(), (self.quarter, 1))
         self.passed = 0
         self.share = np.zeros(self.envs.num_envs)
 
     def sample(self) -> Floats:
-        """Return the reward (arms,) of the sample that has just passed."""
+        """Compute the reward (arms,) of the last sample."""
         options, info = self.options, self.envs.batch.info()
         strain, place = self._strain(), self.passed % self.quarter
         before = self.strains[place].copy()
@@ -54,14 +54,14 @@ class TrainingReward:
         return found
 
     def command(self, share: Floats) -> Floats:
-        """Return the reward (arms,) of commands over the limit (arms,), once for each action."""
+        """Compute the reward (arms,) of commands over the limit (arms,), once for each action."""
         change, self.share = share - self.share, share
         return -self.options.effort * share**2 - self.options.change * change**2
 
     def _strain(self) -> Floats:
-        """Return the base strain without noise (arms,) [V]; none where it is not measured."""
-        looks = self.envs.batch.looks
-        return np.zeros(len(looks)) if self.gage is None else looks[:, self.gage].copy()
+        """Look up the base strain without noise (arms,) [V]; zeros for an arm without that gage."""
+        exact = self.envs.batch.exact_readings
+        return np.zeros(len(exact)) if self.gage is None else exact[:, self.gage].copy()
 
 
 def _share(size: Floats, scale: float, whole: float) -> Floats:

@@ -1,4 +1,4 @@
-"""One training run, from a plan and a seed to an artefact; it can be stopped and goes on where it was."""
+"""One training run, from a plan and a seed to an artefact; a stopped run continues from its checkpoint."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from agents.learning.options import Plan
 from flexarm_env import Arm, InputError, __version__
 from flexarm_env.terminal.provenance import commit
 
-#: Told the share done and one line about it.
+#: Called with the finished share and one line about it.
 Report = Callable[[float, str], None]
 #: Time between checkpoints [s], and points of a stored learning curve.
 BETWEEN, POINTS = 10.0, 100
 
 
 class Watch(BaseCallback):
-    """Between batches of episodes: the learning curve, checkpoints, progress."""
+    """Learning curve, checkpoints and progress, between batches of episodes."""
 
     def __init__(self, plan: Plan, env: EpisodeVecEnv, run: dict[str, Any], place: Path | None, report: Report) -> None:
         super().__init__()
@@ -47,14 +47,14 @@ class Watch(BaseCallback):
         self.look()
 
     def calm(self) -> None:
-        """Set how far PPO's actions stray where that is to fall, so that at last what is learned is what is evaluated."""
+        """Set the falling spread of PPO's actions, so that training ends with the policy that is evaluated."""
         network, share = self.plan.network, min(self.num_timesteps / self.plan.actions, 1.0)
         spread = network.log_std + share * (network.last_log_std - network.log_std)
         if self.plan.algorithm in ON_POLICY and network.spread == "falling":
             self.model.policy.log_std.requires_grad_(False).fill_(spread)
 
     def look(self) -> None:
-        """Note how the last episodes went, and keep the state where it is time to."""
+        """Record the last episodes' return, and write a checkpoint when it is due."""
         # an off-policy batch is a single action: look only where episodes begin
         if self.env.step_number or self.env.mean_return is None:
             return
@@ -70,17 +70,17 @@ class Watch(BaseCallback):
 
 
 def train(plan: Plan, seed: int, place: Path | None, report: Report, tensorboard: Path | None = None) -> Artefact:
-    """Return what a run of a plan ends with.
+    """Run a plan; return its artefact.
 
     Args:
         plan: all about the run but its seed.
         seed: of the network, the actions, the batches and the arms.
         place: of the checkpoint, from which the run goes on where there is one; None for none.
-        report: told how far it is.
+        report: called with the progress.
         tensorboard: folder for TensorBoard.
 
     Raises:
-        InputError: for a plan whose arm is not there, or a checkpoint of another plan.
+        InputError: for a plan with a missing arm, or a checkpoint of another plan.
     """
     torch.set_num_threads(1)
     arm = Arm.load(plan.arm)
@@ -105,6 +105,6 @@ def train(plan: Plan, seed: int, place: Path | None, report: Report, tensorboard
 
 
 def thinned(curve: list[list[float]]) -> list[list[float]]:
-    """Return at most POINTS of a curve's points, evenly, the last among them."""
+    """Select at most POINTS of a curve's points, evenly, the last among them."""
     places = np.unique(np.linspace(0, len(curve) - 1, min(POINTS, len(curve))).round().astype(int))
     return [curve[place] for place in places]

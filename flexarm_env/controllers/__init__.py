@@ -1,4 +1,4 @@
-"""Controllers by name: the thesis's and those that it leaves for future work."""
+"""Controllers by name: those of the thesis and those that it leaves for future work."""
 
 from __future__ import annotations
 
@@ -60,16 +60,24 @@ CONTROLLERS: dict[str, Recipe] = {
 
 
 def make_controller(name: str, arm: Arm, interval: float, **options: Any) -> Controller:
-    """Return a controller by name.
+    """Make a controller by its name.
 
     Args:
         name: one of CONTROLLERS.
-        arm: what the controller believes the arm to be.
+        arm: model of the arm on which the controller is designed.
         interval: control period [s].
         options: of the controller's class, over those of its recipe.
 
     Raises:
         InputError: for a name or option that does not exist, or an arm that lacks a signal.
+
+    Examples:
+        >>> import numpy as np
+        >>> from flexarm_env import Arm
+        >>> controller = make_controller("pd", Arm.load("thesis"), interval=0.005)
+        >>> controller.reset()
+        >>> float(controller.act(np.array([0.0, 0.0, 0.0, 0.0, 0.5])))  # arm angle, motor speed, strains; target [rad]
+        1.2654
     """
     if name not in CONTROLLERS:
         raise InputError(f"no controller '{name}'{did_you_mean(name, CONTROLLERS)}")
@@ -82,7 +90,7 @@ def make_controller(name: str, arm: Arm, interval: float, **options: Any) -> Con
 
 
 def _options(build: type[Controller]) -> list[str]:
-    """Names of a class's options, with those that it hands on to the class above."""
+    """List a class's options, with those that it passes on to the class above."""
     parameters = inspect.signature(build).parameters.values()
     own = [p.name for p in parameters if p.kind is not inspect.Parameter.VAR_KEYWORD][2:]
     hands_on = any(p.kind is inspect.Parameter.VAR_KEYWORD for p in parameters)

@@ -1,4 +1,4 @@
-"""What every controller is: reset, then one command for each observation, for one arm or many at once."""
+"""Base of the controllers: reset, then one command for each observation, for one arm or many at once."""
 
 from __future__ import annotations
 
@@ -14,20 +14,17 @@ from flexarm_env.errors import InputError
 
 Floats = NDArray[np.float64]
 
-#: Limit [A] and gear ratio of the drive for which the thesis's gains are meant; other drives scale them.
-THESIS_LIMIT, THESIS_GEAR_RATIO = 5.0, 1.5
-
 
 class Controller(ABC):
-    """A control law over what the rig measures. The same bits come out for one arm and for that arm among many.
+    """A control law on the rig's readings. An arm gets the same bits alone and among many.
 
-    Beside the law's command goes what holds the hub against loads that the believed arm has (see KnownLoads).
+    The loads of the modelled arm (see KnownLoads) are compensated in addition to the law's command.
 
     A reading that is not finite is replaced by that arm's last finite one (0 before there is one), so that a command is
     always finite and one bad sample does not stay in the controller's memory.
 
     Args:
-        arm: what the controller believes the arm to be; the arm that it drives may differ.
+        arm: model on which the controller is designed; the driven arm may differ.
         interval: control period [s].
 
     Raises:
@@ -58,11 +55,14 @@ class Controller(ABC):
         self._seen = np.zeros((0, 0))
 
     def reset(self, count: int | None = None) -> None:
-        """Start an episode.
+        """Start an episode: clear the controller's memory.
 
         Args:
-            count: how many arms are driven at once, whose observations are (count, signals + 1); None for one arm,
-                whose observations are (signals + 1,).
+            count: number of arms, with observations (count, signals + 1); None for one arm, with observations
+                (signals + 1,).
+
+        Raises:
+            InputError: for a count below 1.
         """
         if count is not None and count < 1:
             raise InputError(f"reset({count}); give the number of arms, at least 1, or None for a single one")
@@ -70,7 +70,7 @@ class Controller(ABC):
         self._start(self._width)
 
     def act(self, observation: NDArray[np.floating]) -> Floats:
-        """Return the command (…,) [A or V], within the drive's limit.
+        """Compute the command (…,) [A or V], within the drive's limit.
 
         Args:
             observation: (…, signals + 1) readings in the order of the arm's signals (rad, rad/s, V, V, m), then the
@@ -78,6 +78,15 @@ class Controller(ABC):
 
         Raises:
             InputError: for an observation of another shape, or before reset.
+
+        Examples:
+            >>> from flexarm_env.controllers import make_controller
+            >>> controller = make_controller("pd", Arm.load("thesis"), interval=0.005)
+            >>> controller.reset(count=2)
+            >>> observations = np.zeros((2, 5))
+            >>> observations[:, -1] = [0.5, 4.0]  # targets [rad]
+            >>> controller.act(observations)
+            array([1.2654, 5.    ])
         """
         seen = np.asarray(observation, dtype=np.float64)
         shape = (len(self.signals) + 1,) if self._count is None else (self._count, len(self.signals) + 1)
@@ -91,7 +100,7 @@ class Controller(ABC):
         return command if self._count is not None else command.reshape(())
 
     def action(self, observation: NDArray[np.floating]) -> NDArray[np.float32]:
-        """Return the command over the drive's limit, (…, 1), as the environments take it.
+        """Compute the command over the drive's limit (…, 1), the action of an environment.
 
         Raises:
             InputError: for a drive without a limit.
@@ -101,31 +110,24 @@ class Controller(ABC):
         return (self.act(observation) / self.limit)[..., None].astype(np.float32)
 
     def clipped(self, command: Floats) -> Floats:
-        """Return commands as the drive lets them through."""
+        """Limit commands to the drive's range."""
         return np.minimum(np.maximum(command, -self.limit), self.limit) if self.limit > 0.0 else command
 
     def column(self, signal: str) -> int:
-        """Place of a signal in an observation."""
+        """Look up the column of a signal in an observation."""
         return self.signals.index(signal)
 
     def coulomb_torque(self) -> float:
-        """Coulomb friction that the controller believes in [Nm, arm side]."""
+        """Look up the Coulomb friction of the modelled arm [Nm, arm side]."""
         return float(dict(self.arm.present()).get("coulomb", {}).get("torque", 0.0))
 
     def _start(self, count: int) -> None:
-        """Forget the last episode, of which there is more to forget in most controllers."""
+        """Clear the memory of the last episode; controllers with more memory extend this."""
         self._seen = np.zeros((count, len(self.signals) + 1))
 
     @abstractmethod
     def _command(self, seen: Floats) -> Floats:
-        """Return commands (count,) from finite observations (count, signals + 1)."""
+        """Compute commands (count,) from finite observations (count, signals + 1)."""
 
     def _sent(self, command: Floats) -> None:  # noqa: B027
-        """Note the commands (count,) that act on the arms until the next observation, for laws that predict."""
-
-
-def thesis_scale(arm: Arm) -> tuple[float, float]:
-    """What the thesis's gains on angle and motor speed are multiplied by for an arm: by its limit and gears."""
-    drive = arm.constants["drive"]
-    scale = drive["limit"] / THESIS_LIMIT if drive["limit"] > 0.0 else drive["resistance"] if arm.input == "voltage" else 1.0
-    return scale, scale * THESIS_GEAR_RATIO / drive["gear_ratio"]
+        """Record the commands (count,) that act on the arms until the next observation, for laws that predict."""

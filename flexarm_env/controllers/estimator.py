@@ -9,32 +9,33 @@ from flexarm_env.arm import Arm
 from flexarm_env.controllers.base import Floats
 from flexarm_env.controllers.slow import slow_part
 from flexarm_env.errors import InputError
+from flexarm_env.parameters import reading_noise
 
 #: Motion faster than this [Hz] is taken to follow at once. Control at 200 Hz should not act on it: the thesis-fem arm's third
 #: vibration (44 Hz) moves with the payload, and an LQG that relies on it swings without end at 0.3 kg.
 HIGHEST_FREQUENCY = 32.0
 #: Standard deviation of the friction's change [Nm] and of other torque on the hub [Nm] in each sample of 5 ms.
 FRICTION_CHANGE, TORQUE_NOISE, USUAL_INTERVAL = 0.02, 0.04, 0.005
-#: Least standard deviation of a reading, for sensors without noise, in their own unit, and what a gage shows of motion
-#: that the filter leaves out [V].
+#: Least standard deviation of a reading, for sensors without noise, in their own unit; and standard deviation of a gage's
+#: reading due to motion that the filter leaves out [V].
 LEAST_NOISE, STRAIN_LEFT_OUT = 1e-3, 0.06
-#: Noise of each slow coordinate on its own, over what the torque's gives it.
+#: Independent process noise of each slow coordinate, over the noise that the torque gives it.
 SHARE_OF_ALL = 1.0
 
 
 class Estimator:
     """Estimates the slow motion of many arms, and the friction on their hubs, from all readings and the commands.
 
-    Dry friction, stiction among it, is an unknown torque on the hub that walks at random: no decision about sticking has
-    to be taken, and the estimate of a stuck hub is right as well, since the friction then balances whatever pushes it.
+    Dry friction, with stiction, is modelled as a random-walk torque on the hub. The filter needs no decision about sticking,
+    and its estimate of a stuck hub is right as well: there the friction balances all other torque.
 
     Args:
-        arm: believed.
+        arm: modelled.
         interval: control period [s].
         highest_frequency: of the vibrations that are followed [Hz].
 
     Raises:
-        InputError: for an arm whose readings do not show its state.
+        InputError: for an arm whose state is not observable from its readings.
     """
 
     def __init__(self, arm: Arm, interval: float, highest_frequency: float = HIGHEST_FREQUENCY) -> None:
@@ -45,17 +46,17 @@ class Estimator:
         self.transition[:size, size] = self.model.response[:, 1]
         self.response = np.append(self.model.response[:, 0], 0.0)
         self.direct = self.model.direct[:, 0]
-        #: What the arm's constant torque adds to the state in a sample, and to the readings.
+        #: Effect of the arm's constant torque on the state in a sample, and on the readings.
         self.drift = np.append(self.model.response[:, 1], 0.0) * (torque := arm.structure().hub_torque)
         self.offset = self.model.offset + self.model.direct[:, 1] * torque
         self.output = np.hstack([self.model.output, self.model.direct[:, 1:]])
-        noise = [max(np.hypot(s["noise"], s["resolution"] / 12**0.5), LEAST_NOISE) for s in arm.sensors.values()]
+        noise = [max(reading_noise(s), LEAST_NOISE) for s in arm.sensors.values()]
         extra = [STRAIN_LEFT_OUT * arm.sensor(signal).strain for signal in arm.sensors]
         self.gain = _gain(self.transition, self.output, self._process(interval), np.hypot(noise, extra), arm.name)
         self._angle = self.model.signals.index("arm_angle")
 
     def _process(self, interval: float) -> Floats:
-        """Covariance (slow + 1, slow + 1) that a sample adds."""
+        """Compute the process covariance of a sample (slow + 1, slow + 1)."""
         push = self.model.response[:, 1]
         process = np.zeros((self.size + 1,) * 2)
         process[:-1, :-1] = TORQUE_NOISE**2 * (np.outer(push, push) + SHARE_OF_ALL * np.diag(push**2))
@@ -63,13 +64,13 @@ class Estimator:
         return process
 
     def start(self, count: int) -> None:
-        """Forget all; the first readings set the hub's angle."""
+        """Reset the estimate; the first readings set the hub's angle."""
         self.state = np.zeros((count, self.size + 1))
         self._sent = np.zeros(count)
         self._fresh = True
 
     def correct(self, readings: Floats) -> Floats:
-        """Return the estimate (count, slow + 1), friction last, after these readings (count, signals)."""
+        """Correct the estimate (count, slow + 1), friction last, by readings (count, signals), and return it."""
         if self._fresh:
             self._fresh = False
             angle = readings[:, self._angle] - self.model.offset[self._angle]
@@ -79,31 +80,31 @@ class Estimator:
         return self.state
 
     def predict(self, command: Floats) -> None:
-        """Move the estimate on by one sample under commands (count,) as the drive lets them through."""
+        """Predict the estimate one sample ahead under commands (count,) behind the drive."""
         self.state = product(self.transition, self.state) + command[:, None] * self.response + self.drift
         self._sent = command
 
     def amend(self, extra: Floats) -> None:
-        """Count in what was sent beyond the command that the state was moved on by, extra (count,) [A or V]."""
+        """Add the effect of a command extra (count,) [A or V] to that of the last prediction."""
         self.state = self.state + extra[:, None] * self.response
         self._sent = self._sent + extra
 
     def reading(self, signal: str) -> Floats:
-        """What a sensor would show, without noise and offset (count,)."""
+        """Estimate a sensor's reading without noise and offset (count,)."""
         place = self.model.signals.index(signal)
         return scalar(self.output[place], self.state) + self._sent * self.direct[place]
 
 
 def product(matrix: Floats, vectors: Floats) -> Floats:
-    """Return matrix (rows, columns), or one for each (count, rows, columns), times vectors (count, columns).
+    """Multiply matrix (rows, columns), or one for each (count, rows, columns), by vectors (count, columns).
 
-    Not by BLAS, whose rounding depends on how many vectors there are.
+    Without BLAS: its rounding depends on the number of vectors.
     """
     return np.einsum("...ij,...j->...i", matrix, vectors)
 
 
 def scalar(row: Floats, vectors: Floats) -> Floats:
-    """Return row (columns,), or one for each (count, columns), times vectors (count, columns): (count,)."""
+    """Multiply row (columns,), or one for each (count, columns), by vectors (count, columns): (count,)."""
     return np.einsum("...j,...j->...", row, vectors)
 
 

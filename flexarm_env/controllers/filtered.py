@@ -9,19 +9,19 @@ from flexarm_env.controllers.base import Floats
 from flexarm_env.controllers.estimator import Estimator
 from flexarm_env.controllers.vibration import VibrationSuppression
 
-#: Vibrations up to this [Hz] are told apart: their strain is fed back as it is read, and not designed upon as in LQG.
+#: Vibrations up to this [Hz] are estimated. Their strain is fed back directly, without a regulator designed on it as in LQG.
 HIGHEST_FREQUENCY = 48.0
 
 
 class FilteredVibrationSuppression(VibrationSuppression):
-    """The thesis's controller by regions of speed, which sees speed and M_o through a Kalman filter.
+    """The thesis's controller by regions of speed, on speed and M_o from a Kalman filter.
 
-    The filter knows the arm and the command, so it delays neither strain nor speed, as a low-pass would. On the thesis's
-    sensors it takes about a fifth of the noise out of the speed; the strain it knows about as well as its gage (friction
-    is unknown, so 200 samples a second leave little to average over).
+    The filter uses the arm's model and the command, so it delays neither strain nor speed, as a low-pass would. On the
+    thesis's sensors it removes about a fifth of the speed's noise. Its strain is about as accurate as the gage: friction is
+    unknown, and 200 samples a second leave little to average over.
 
     Args:
-        arm: believed.
+        arm: modelled.
         interval: control period [s].
         options: as for VibrationSuppression.
     """
@@ -35,7 +35,7 @@ class FilteredVibrationSuppression(VibrationSuppression):
         self.estimator.start(count)
 
     def motion(self, seen: Floats) -> tuple[Floats, Floats]:
-        """Return estimated motor speed [rad/s] and M_o [Nm, motor side], each (count,)."""
+        """Estimate motor speed [rad/s] and M_o [Nm, motor side], each (count,)."""
         self.estimator.correct(seen[:, :-1])
         strain = self.estimator.reading(self._gage)
         return self.estimator.reading("motor_speed"), self._torque_per_strain * strain

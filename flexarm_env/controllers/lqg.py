@@ -1,4 +1,4 @@
-"""LQG: the estimated state fed back, and the estimated friction cancelled as far as that is safe."""
+"""LQG: state feedback from a Kalman filter, and compensation of the estimated friction up to the Coulomb torque."""
 
 from __future__ import annotations
 
@@ -6,42 +6,42 @@ import numpy as np
 from scipy.linalg import solve_discrete_are
 
 from flexarm_env.arm import Arm
-from flexarm_env.controllers.base import THESIS_LIMIT, Controller, Floats
+from flexarm_env.controllers.base import Controller, Floats
 from flexarm_env.controllers.estimator import Estimator, scalar
 from flexarm_env.controllers.slow import SlowPart
 from flexarm_env.errors import InputError
+from flexarm_env.thesis_drive import LIMIT
 
-#: Sizes that the regulator holds to cost as much as one another: hub angle [rad], strain as tip deflection [m], hub speed
-#: [rad/s], tip's speed against the hub [m/s], and the command over the drive's limit. Chosen by trial so that the loop also
-#: stands a dead time of one sample of 5 ms that it does not know; a stiffer design settled in 1.1 s, not 1.5, and did not.
+#: Sizes of equal cost in the regulator: hub angle [rad], strain as tip deflection [m], hub speed [rad/s], tip's speed against
+#: the hub [m/s], and the command over the drive's limit. Chosen by trial so that the loop also tolerates an unmodelled dead
+#: time of one sample of 5 ms; a stiffer design settled in 1.1 s, not 1.5, and did not tolerate it.
 ANGLE, DEFLECTION, SPEED, TIP_SPEED, COMMAND = 0.12, 0.16, 1.0, 1.2, 0.25
-#: Largest part of the drive's limit that the angle's error may ask for: the rest is left for the beam and friction.
+#: Largest command for the angle's error, as a share of the drive's limit; the rest is left for the beam and friction.
 SHARE = 0.9
 #: Hub angle [rad] within which friction may hold the hub, and how fast the rest of the error is integrated [1/s].
 REST, INTEGRATION = np.deg2rad(0.5), 1.0
 
 
 class LQG(Controller):
-    """Command = −K (x̂ − target) + friction opposed, with a Kalman filter for x̂ and the friction.
+    """Command = −K (x̂ − target) + friction compensation, with a Kalman filter for x̂ and the friction.
 
-    Friction is opposed as estimated, but never by more than the Coulomb torque that the arm is believed to have: that
-    alone cannot move a stuck hub, so it does not overcompensate (thesis section 4.5 and chapter 5). What static
-    friction holds beyond that is left to the integral of the angle's error, which pauses within half a degree so that
-    the hub does not hunt.
+    The estimated friction is compensated up to the Coulomb torque of the modelled arm. That torque alone cannot move a stuck
+    hub, so it does not overcompensate (thesis section 4.5 and chapter 5). Static friction above it is left to the
+    integral of the angle's error, which pauses within half a degree so that the hub does not hunt.
 
-    A dead time of the drive is left out of the design, even if the believed arm has one.
+    The design leaves out a dead time of the drive, even if the modelled arm has one.
 
     The error of the angle is limited, so that a long slew cruises and leaves the beam's feedback room below the limit.
 
     Args:
-        arm: believed.
+        arm: modelled.
         interval: control period [s].
     """
 
     def __init__(self, arm: Arm, interval: float) -> None:
         super().__init__(arm, interval)
         self.estimator = Estimator(arm, interval)
-        limit = self.limit if self.limit > 0.0 else THESIS_LIMIT
+        limit = self.limit if self.limit > 0.0 else LIMIT
         self.gain = regulator_gain(self.estimator.model, COMMAND * limit)
         self._hub = self.estimator.model.row("hub")
         #: Command per angle of a hub at rest, by which the target acts.
@@ -75,11 +75,11 @@ class LQG(Controller):
 
 
 def regulator_gain(model: SlowPart, command: float) -> Floats:
-    """Return K (slow,) of the linear-quadratic regulator (Anderson and Moore, Optimal Control (1990), chapter 2).
+    """Compute the gain K (slow,) of the linear-quadratic regulator (Anderson and Moore, Optimal Control (1990), chapter 2).
 
     Args:
         model: of the arm.
-        command: size [A or V] that costs as much as the other sizes.
+        command: size [A or V] of the same cost as the other sizes.
 
     Raises:
         InputError: for an arm that its drive cannot move.

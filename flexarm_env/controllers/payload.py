@@ -1,4 +1,4 @@
-"""The payload, from the fundamental frequency that the strain shows (thesis chapter 5)."""
+"""Estimation of the payload from the fundamental frequency of the strain (thesis chapter 5)."""
 
 from __future__ import annotations
 
@@ -6,19 +6,22 @@ import numpy as np
 
 from flexarm_env.arm import Arm
 from flexarm_env.controllers.base import Floats
+from flexarm_env.controllers.estimator import LEAST_NOISE
 from flexarm_env.errors import InputError
 from flexarm_env.linear import linearise
+from flexarm_env.parameters import reading_noise
 
 #: Payloads [kg] between which frequencies are interpolated.
 LARGEST, STEPS = 0.6, 25
-#: Corner of the three low-passes in a row before the fit, over the unloaded arm's frequency: low enough to
-#: keep the second vibration out.
+#: Corner of the three low-passes in series before the fit, over the unloaded arm's frequency: low enough to reject the
+#: second vibration.
 CORNER = 0.45
-#: Time in which what was seen loses weight, and time between estimates [s].
+#: Time constant of the forgetting, and time between estimates [s].
 MEMORY, BETWEEN = 3.0, 0.025
-#: An arm that does not start at rest, within so many times the noise, has to wait for so many time constants of a low-pass.
+#: An arm is at rest within AT_REST times its readings' noise. If it is not at the start, estimation waits for WAIT time
+#: constants of a low-pass.
 AT_REST, WAIT = 5.0, 10.0
-#: Squared filtered strain that must have been seen, summed up over the noise's variance, before an estimate counts.
+#: Sum of the squared filtered strain, over the noise's variance, from which an estimate is used.
 ENOUGH = 2e4
 
 
@@ -32,7 +35,7 @@ class PayloadEstimator:
     forgetting. The frequency table of the stuck arm then gives the payload.
 
     Args:
-        arm: believed; its known tip mass is the start.
+        arm: modelled; its known tip mass is the first estimate.
         interval: control period [s].
 
     Raises:
@@ -53,14 +56,14 @@ class PayloadEstimator:
         self._corner, self._blend = corner, corner * interval / (2.0 + corner * interval)
         self._interval, self._fade = interval, np.exp(-interval / MEMORY)
         self._every = max(round(BETWEEN / interval), 1)
-        noise = [max(float(np.hypot(s["noise"], s["resolution"] / 12**0.5)), 1e-3) for s in (sensor, tach)]
+        noise = [max(reading_noise(s), LEAST_NOISE) for s in (sensor, tach)]
         self._rest = AT_REST * np.array(noise)[:, None] / [[1.0], [self._gears]]
         self._enough = ENOUGH * noise[0] ** 2
-        #: Of θ̈'s share: what the tachometer's noise alone would show, so that a stuck hub's g is not read from noise.
+        #: Regularisation of g by the tachometer's noise, so that it is not estimated from noise on a stuck hub.
         self._ridge = (corner * noise[1] / self._gears) ** 2
 
     def start(self, count: int) -> None:
-        """Forget all."""
+        """Reset the estimates."""
         #: Inputs and outputs of the low-passes, for strain [V] and hub speed [rad/s].
         self._stages = np.zeros((4, 2, count))
         self._squares = np.zeros((3, count))
@@ -71,7 +74,7 @@ class PayloadEstimator:
         self.payload = np.full(count, self.payloads[-1])
 
     def update(self, seen: Floats) -> Floats:
-        """Take in readings (count, signals, …) and return payloads (count,) [kg]; `known` says which are measured."""
+        """Update the estimates by readings (count, signals, …); return payloads (count,) [kg], measured ones where `known`."""
         stages = self._stages
         enters = stages.copy()
         stages[0, 0], stages[0, 1] = seen[:, self._gage] - self._offset, seen[:, self._speed] / self._gears
@@ -102,7 +105,7 @@ class PayloadEstimator:
 
 
 def frequency_table(arm: Arm, interval: float) -> tuple[Floats, Floats]:
-    """Return fundamental frequencies (steps,) [Hz] of the stuck arm, rising, and the tip masses (steps,) [kg] behind them."""
+    """Tabulate fundamental frequencies (steps,) [Hz] of the stuck arm, rising, and their tip masses (steps,) [kg]."""
     payloads = np.linspace(0.0, LARGEST, STEPS) + arm.value("beam.tip_mass")
     found = [linearise(arm.with_values({"beam.tip_mass": mass}), "stuck", interval).vibrations()[0] for mass in payloads]
     return np.array([frequencies[0] for frequencies in found])[::-1], payloads[::-1]

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from flexarm_env.arm import Arm
-from flexarm_env.controllers.base import Controller, Floats, thesis_scale
+from flexarm_env.controllers.base import Controller, Floats
 from flexarm_env.errors import InputError
+from flexarm_env.thesis_drive import DERIVATIVE, GEAR_RATIO, PROPORTIONAL, command_scale
 
-#: Thesis section 2.3, Fig. 2.6 [A/rad on the arm's angle, A s/rad on the motor's speed].
-PROPORTIONAL, DERIVATIVE = 2.5308, 0.6625
 #: From nothing to the thesis's limit in 0.1 s [A/s], a period of the pinned beam.
 RATE = 50.0
 
@@ -18,7 +17,7 @@ class PD(Controller):
     """Command = P (target − arm angle) − D motor speed (thesis eq. 4.2 without M_o).
 
     Args:
-        arm: believed.
+        arm: modelled.
         interval: control period [s].
         proportional: P [A/rad or V/rad]; the thesis's by default, scaled to the arm's limit.
         derivative: D [A s/rad or V s/rad], on the motor's speed; likewise, scaled to the gears as well.
@@ -28,8 +27,9 @@ class PD(Controller):
         self, arm: Arm, interval: float, proportional: float | None = None, derivative: float | None = None
     ) -> None:  # fmt: skip
         super().__init__(arm, interval)
-        on_angle, on_speed = thesis_scale(arm)
-        self.proportional = on_angle * PROPORTIONAL if proportional is None else proportional
+        scale = command_scale(arm)
+        on_speed = scale * GEAR_RATIO / arm.constants["drive"]["gear_ratio"]
+        self.proportional = scale * PROPORTIONAL if proportional is None else proportional
         self.derivative = on_speed * DERIVATIVE if derivative is None else derivative
         self._angle, self._speed = self.column("arm_angle"), self.column("motor_speed")
 
@@ -38,12 +38,12 @@ class PD(Controller):
 
 
 class RateLimitedPD(PD):
-    """PD whose command ramps instead of stepping (thesis section 2.3, Fig. 2.8, and chapter 5).
+    """PD with a rate-limited command (thesis section 2.3, Fig. 2.8, and chapter 5).
 
     Args:
-        arm: believed.
+        arm: modelled.
         interval: control period [s].
-        rate: the fastest that the command may change [A/s or V/s]. The thesis gives no number.
+        rate: largest rate of the command [A/s or V/s]. The thesis gives no number.
         proportional: as for PD.
         derivative: as for PD.
     """
@@ -53,7 +53,7 @@ class RateLimitedPD(PD):
         derivative: float | None = None,
     ) -> None:  # fmt: skip
         super().__init__(arm, interval, proportional, derivative)
-        rate = thesis_scale(arm)[0] * RATE if rate is None else rate
+        rate = command_scale(arm) * RATE if rate is None else rate
         if not rate > 0.0:
             raise InputError(f"rate {rate:g} A/s; give a positive number such as {RATE:g}")
         self._step = rate * interval

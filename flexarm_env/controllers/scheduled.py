@@ -1,4 +1,4 @@
-"""LQG whose gains follow the payload that the stuck arm's frequency shows (thesis chapter 5)."""
+"""LQG with gains scheduled by the payload, estimated from the stuck arm's frequency (thesis chapter 5)."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from flexarm_env.controllers.base import Floats
 from flexarm_env.controllers.lqg import LQG
 from flexarm_env.controllers.payload import PayloadEstimator
 
-#: Payloads [kg] that gains are worked out for, over the believed arm's own; an estimate takes the nearest.
+#: Payloads [kg] of the designs, above the modelled arm's own; each estimate uses the nearest.
 PAYLOADS = (0.0, 0.1, 0.2, 0.3, 0.45)
 
 
 class ScheduledLQG(LQG):
-    """LQG with a design for each of a few payloads; each arm uses that of its own estimated payload.
+    """LQG with a design for each of a few payloads; each arm uses the design nearest to its estimated payload.
 
-    Until an arm has come to rest once, nothing is known and the believed arm's design acts.
+    Until an arm's first estimate, the modelled arm's own design acts.
 
     Args:
-        arm: believed.
+        arm: modelled.
         interval: control period [s].
     """
 
@@ -30,7 +30,7 @@ class ScheduledLQG(LQG):
         self._payloads = own + np.array(PAYLOADS)
         self._designs = [LQG(arm.with_values({"beam.tip_mass": mass}), interval) for mass in self._payloads]
         lifts = [design.estimator.model.lift for design in self._designs]
-        #: (old, new, slow + 1, slow + 1): what an estimate in one design's coordinates is in another's.
+        #: (old, new, slow + 1, slow + 1): transforms of an estimate from one design's coordinates to another's.
         self._between = np.array([[_with_friction(np.linalg.pinv(new) @ old) for new in lifts] for old in lifts])
 
     def _start(self, count: int) -> None:
@@ -49,7 +49,7 @@ class ScheduledLQG(LQG):
         return super()._command(seen)
 
     def _adopt(self) -> None:
-        """Give each arm the matrices of its design."""
+        """Select the matrices of each arm's design."""
         for name in ("transition", "response", "drift", "output", "direct", "offset", "gain"):
             setattr(self.estimator, name, self._each([getattr(design.estimator, name) for design in self._designs]))
         for name in ("gain", "stiffness", "_hub", "_furthest"):
@@ -60,7 +60,7 @@ class ScheduledLQG(LQG):
 
 
 def _with_friction(matrix: Floats) -> Floats:
-    """Return the matrix with a row and column more that leave the friction as it is."""
+    """Extend a matrix by a row and a column that leave the friction unchanged."""
     size = len(matrix)
     wide = np.eye(size + 1)
     wide[:size, :size] = matrix

@@ -1,4 +1,4 @@
-"""Input shaping: the target's steps come in parts, timed so that the vibrations they start cancel."""
+"""Input shaping: each step of the target is split into parts, timed so that their vibrations cancel."""
 
 from __future__ import annotations
 
@@ -14,20 +14,19 @@ SHAPERS = {"zv": 1, "zvd": 2}
 
 
 class ShapedPD(PD):
-    """PD on a target that is shaped for the slowest vibration of the loop.
+    """PD on a target that is shaped for the slowest vibration of the stuck arm.
 
-    Which one? The moving arm's (9 Hz, pinned) needs no shaping: the loop damps it to a ratio of 0.4 within a cycle. The
-    beam against the hub is clamped whatever the hub does, driven by the hub's acceleration only: a hub motion shaped for
-    the clamped frequency (2.4 Hz) leaves it at rest, and once the hub is stuck nothing else damps it. So the frequency
-    is that of the stuck arm unless `mode` says otherwise. Before the first sample the target is taken to have been where
-    the arm stands.
+    The moving arm's vibration (9 Hz, pinned) needs no shaping: the loop damps it to a ratio of 0.4 within a cycle. Relative
+    to the hub, the beam is always clamped and driven by the hub's acceleration only. A hub motion shaped for the clamped
+    frequency (2.4 Hz) leaves the beam at rest; once the hub is stuck, nothing else damps it. Before the first sample the
+    target is assumed to have been at the arm's angle.
 
     Args:
-        arm: believed.
+        arm: modelled.
         interval: control period [s].
         shaper: "zv" (zero vibration; two steps) or "zvd" (and zero derivative: half as sensitive to the frequency; three
             steps), after Singer and Seering, J. Dyn. Sys. Meas. Control 112 (1990) 76.
-        mode: of the believed arm whose slowest vibration is shaped for, "stuck" (clamped beam) or "moving" (pinned).
+        mode: of the modelled arm with the vibration to shape for, "stuck" (clamped beam) or "moving" (pinned).
         proportional: as for PD.
         derivative: as for PD.
     """
@@ -51,7 +50,7 @@ class ShapedPD(PD):
         return super()._command(np.column_stack([seen[:, :-1], self.shaped(seen)]))
 
     def shaped(self, seen: Floats) -> Floats:
-        """Take in the targets of this sample and return the shaped ones (count,) [rad]."""
+        """Shape the targets of this sample: (count,) [rad]."""
         length = len(self.weights)
         if self._now < 0:
             self._targets[:] = seen[:, self._angle]
@@ -63,7 +62,7 @@ class ShapedPD(PD):
 
 
 def slowest_vibration(arm: Arm, mode: str, interval: float) -> tuple[float, float]:
-    """Return frequency [Hz] and damping ratio of the slowest vibration of an arm in a mode.
+    """Compute frequency [Hz] and damping ratio of the slowest vibration of an arm in a mode.
 
     Raises:
         InputError: for an arm that does not vibrate.
@@ -76,9 +75,9 @@ def slowest_vibration(arm: Arm, mode: str, interval: float) -> tuple[float, floa
 
 
 def shaper_weights(shaper: str, frequency: float, damping: float, interval: float) -> Floats:
-    """Return weights (taps,) on the target of 0, 1, … samples ago; their sum is 1.
+    """Compute the weights (taps,) on the target of 0, 1, … samples ago; their sum is 1.
 
-    Exact on the samples: zero vibration at the pole z = exp(−ζω + jω√(1−ζ²))·interval asks for Σ a_n z^−n = 0, and
+    Exact on the samples: zero vibration at the pole z = exp(−ζω + jω√(1−ζ²))·interval requires Σ a_n z^−n = 0, and
     the second step, half a period later, is split over the two samples beside it (Tuttle and Seering, Proc. American
     Control Conf. (1994) 2533).
 

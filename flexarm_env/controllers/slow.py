@@ -1,4 +1,4 @@
-"""The part of the arm's motion that control can act on, apart from what is too fast for it."""
+"""The slow part of the arm's motion, on which controllers are designed, separated from the fast part."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class SlowPart:
         transition: (slow, slow).
         response: (slow, 2) to command [A or V] and torque on the hub [Nm].
         output: (outputs, slow).
-        direct: (outputs, 2), what the fast motion adds at once.
+        direct: (outputs, 2), static contribution of the fast motion.
         offset: (outputs,) readings at rest.
         lift: (states, slow).
     """
@@ -37,14 +37,14 @@ class SlowPart:
     lift: Floats
 
     def row(self, name: str) -> Floats:
-        """Return (slow,), the row that gives a physical state."""
+        """Look up the row (slow,) of a physical state."""
         return self.lift[self.names.index(name)]
 
 
 def slow_part(arm: Arm, interval: float, highest_frequency: float) -> SlowPart:
-    """Return the moving arm, its gears rigid, without what is faster than highest_frequency [Hz] or a quarter of the sampling.
+    """Reduce the moving arm with rigid gears to its motion below highest_frequency [Hz] and a quarter of the sampling rate.
 
-    The slow invariant subspace is exact, and what is left out keeps its static answer.
+    The slow invariant subspace is exact, and the fast part keeps its static gain.
     """
     for effect in ("backlash", "gear_compliance"):
         arm = arm.without_effect(effect)

@@ -1,4 +1,4 @@
-"""The thesis's vibration suppression: PD plus the beam's torque on the hub, fed back by region of speed (chapter 4)."""
+"""The thesis's vibration suppression: PD plus feedback of the beam's torque on the hub, by region of speed (chapter 4)."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from flexarm_env.controllers.base import Floats
 from flexarm_env.controllers.pd import PD
 from flexarm_env.errors import InputError
 
-#: Motor speed that parts high from low speed [rad/s] (thesis section 4.3).
+#: Motor speed between low and high speed [rad/s] (thesis section 4.3).
 LOW_SPEED = 0.03
 #: Torque M_o per reading of the gage at mid-beam [Nm/V]: thesis section 4.5 with K = 1.18 in A/V, times kφ. The text gives
-#: K no unit; as 1.18 Nm/V the loop swings between its limits on the consistent model, in A/V it does what Fig. 4.21 shows.
+#: K no unit; in Nm/V the loop swings between its limits on the consistent model, in A/V it reproduces Fig. 4.21.
 TORQUE_PER_STRAIN = 1.18 * 0.33
 
 
@@ -22,17 +22,17 @@ class VibrationSuppression(PD):
     """Command = P error − D motor speed + K_mo M_o(t − t_d) / kφ (thesis eqs. 4.1, 4.2), K_mo by region of speed.
 
     M_o, the beam's torque on the motor [Nm, motor side] (thesis eq. 4.4, with erratum 5), is the moment at the beam's
-    root over the gear ratio. The gage at the base shows that moment; `torque_per_strain` takes M_o = K × strain at
+    root over the gear ratio. The gage at the base measures that moment; `torque_per_strain` takes M_o = K × strain at
     mid-beam instead, as on the rig (thesis section 4.5). P = D = 0 leaves eq. 4.1's term alone, to be added to a pulse.
 
     Args:
-        arm: believed.
+        arm: modelled.
         interval: control period [s].
         high_gain: K_mo while |motor speed| is low_speed or more; −1 damps there (thesis section 4.2).
         low_gain: K_mo below; +1 damps there (thesis section 4.3).
         delay: t_d [s], in whole and parts of samples; 0 in the pinned modes, 0.074 suits the clamped model only.
         low_speed: of the motor [rad/s] (thesis section 4.3).
-        friction_compensation: whether the Coulomb friction is opposed at low speed, in size and direction (section 4.3).
+        friction_compensation: whether the Coulomb friction is compensated at low speed (section 4.3).
         torque_per_strain: K [Nm/V] on the gage at mid-beam, or None for the gage at the base.
         proportional: as for PD.
         derivative: as for PD.
@@ -67,7 +67,7 @@ class VibrationSuppression(PD):
         self._now = 0
 
     def _delayed(self, torque: Floats) -> Floats:
-        """M_o of t_d ago (count,), between samples by a straight line."""
+        """Look up M_o of t_d ago (count,), interpolated between samples."""
         if self._whole == 0 and self._part == 0.0:
             return torque
         length = len(self._past)
@@ -77,7 +77,7 @@ class VibrationSuppression(PD):
         return late + self._part * (early - late)
 
     def motion(self, seen: Floats) -> tuple[Floats, Floats]:
-        """Return motor speed [rad/s] and M_o [Nm, motor side], each (count,)."""
+        """Compute motor speed [rad/s] and M_o [Nm, motor side], each (count,)."""
         return seen[:, self._speed], self._torque_per_strain * (seen[:, self._strain] - self._zero)
 
     def _command(self, seen: Floats) -> Floats:

@@ -1,4 +1,4 @@
-"""What an environment is made of, and the tables of numbers that its kernel takes."""
+"""Task, arm and settings of an environment, and the tables of numbers that its kernel takes."""
 
 from __future__ import annotations
 
@@ -9,28 +9,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.env import kernel as at
+from flexarm_env.env import layout as at
 from flexarm_env.env.variation import Disturbance, Variation
 from flexarm_env.errors import InputError
 from flexarm_env.plant.plant import Plant
 from flexarm_env.sensors import Sensor, known_sensors
 from flexarm_env.sensors.arm_angle import ArmAngle
-from flexarm_env.tasks import REWARD_TERMS, Task
+from flexarm_env.tasks import CONTROL_RATE, Task
+from flexarm_env.thesis_drive import GEAR_RATIO
 
 Floats = NDArray[np.float64]
-
-THESIS_GEAR_RATIO = 1.5
 MOST_RATE = 10_000.0
 
 
 @dataclass(frozen=True)
 class Setup:
-    """All that an environment is made of.
+    """Task, arm and settings of an environment.
 
     Attributes:
         task: start, target, reward, end.
         arm: the nominal one.
-        variation: what is drawn anew for each episode.
+        variation: values drawn anew for each episode.
         disturbance: taps and drop-outs.
         rate: control steps per second [Hz].
         physical: whether observations are in physical units; else over typical readings.
@@ -40,7 +39,7 @@ class Setup:
     arm: Arm
     variation: Variation = field(default_factory=Variation)
     disturbance: Disturbance = field(default_factory=Disturbance)
-    rate: float = 200.0
+    rate: float = CONTROL_RATE
     physical: bool = False
 
     def __post_init__(self) -> None:
@@ -54,20 +53,20 @@ class Setup:
     @property
     def samples(self) -> int:
         """Control steps of an episode."""
-        return max(round(self.task.duration * self.rate), 1)
+        return self.task.steps(self.rate)
 
     def scales(self) -> Floats:
-        """Return what readings and target are divided by (signals + 1,)."""
+        """List the divisors of readings and target (signals + 1,)."""
         if self.physical:
             return np.ones(len(self.arm.sensors) + 1)
         return np.array([*(sensor.typical * self._gearing(sensor) for sensor in self._sensors), ArmAngle.typical])
 
     def bounds(self) -> Floats:
-        """Return the largest observation of each reading and of the target (signals + 1,)."""
+        """List the largest observations of the readings and of the target (signals + 1,)."""
         return self.largest() / self.scales()
 
     def largest(self) -> Floats:
-        """Return where readings and target end (signals + 1,), SI units."""
+        """List the ends of the ranges of readings and target (signals + 1,), SI units."""
         return np.array([*(sensor.range_end() * self._gearing(sensor) for sensor in self._sensors), ArmAngle.range_end()])
 
     @property
@@ -75,8 +74,8 @@ class Setup:
         return [known_sensors()[signal] for signal in self.arm.sensors]
 
     def _gearing(self, sensor: type[Sensor]) -> float:
-        """How much faster the motor turns than that of the thesis's arm, where that is what is measured."""
-        return self.arm.constants["drive"]["gear_ratio"] / THESIS_GEAR_RATIO if sensor.motor_side else 1.0
+        """Compute the gear ratio over the thesis's for a signal on the motor's side, else 1."""
+        return self.arm.constants["drive"]["gear_ratio"] / GEAR_RATIO if sensor.motor_side else 1.0
 
 
 def check_layouts(setup: Setup, plant: Plant) -> None:
@@ -94,7 +93,7 @@ def check_layouts(setup: Setup, plant: Plant) -> None:
 
 
 def sensors_of(setup: Setup) -> Floats:
-    """Return the sensors' numbers (signals, SENSOR)."""
+    """Tabulate the sensors' numbers (signals, SENSOR)."""
     table = np.zeros((len(setup.arm.sensors), at.SENSOR))
     scales = setup.scales()
     largest = setup.largest()
@@ -108,20 +107,20 @@ def sensors_of(setup: Setup) -> Floats:
 
 
 def per_torque_of(arm: Arm) -> float:
-    """Return the command [A or V] that is as much as a torque on the hub [1/Nm]."""
+    """Compute the command that gives 1 Nm on the hub at rest [A/Nm or V/Nm]."""
     drive = arm.constants["drive"]
     per_torque = 1.0 / (drive["gear_ratio"] * drive["torque_constant"])
     return per_torque * drive["resistance"] if arm.input == "voltage" else per_torque
 
 
 def settings_of(setup: Setup, limit: float) -> Floats:
-    """Return the task's, the disturbances' and the reward's numbers, in the kernel's order (settings,)."""
+    """Tabulate the numbers of task, disturbances and reward, in the kernel's order (settings,)."""
     trouble, rate = setup.disturbance, setup.rate
-    settings = np.zeros(at.SETTINGS)
+    settings = np.zeros(at.WEIGHTS + len(setup.task.terms))
     settings[at.INTERVAL], settings[at.HALF_PERIOD], settings[at.RANGE] = 1.0 / rate, setup.task.half_period, setup.task.range
     settings[at.LIMIT], settings[at.TARGET_SCALE] = limit, setup.scales()[-1]
     settings[at.TAP_CHANCE], settings[at.TAP_TORQUE] = trouble.tap_rate / rate, trouble.tap_torque
     settings[at.TAP_SAMPLES] = max(round(trouble.tap_time * rate), 1)
     settings[at.DROP_CHANCE], settings[at.DROP_SAMPLES] = trouble.dropout_rate / rate, max(round(trouble.dropout_time * rate), 1)
-    settings[at.WEIGHTS :] = [setup.task.weights.get(name, 0.0) for name in REWARD_TERMS]
+    settings[at.WEIGHTS :] = [setup.task.weight(term) for term in setup.task.terms]
     return settings

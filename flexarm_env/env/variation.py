@@ -1,4 +1,4 @@
-"""What differs from episode to episode: constants and effects of the arm, and what disturbs it."""
+"""Differences from episode to episode: constants and effects of the arm, taps on its hub, drop-outs of its sensors."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from flexarm_env.effects import Effect
 from flexarm_env.errors import InputError, did_you_mean
 
 Range = Sequence[float]
-#: Stands in a parameter's range for absence: the smallest share of it that still counts as present.
+#: Lowest value of a range that begins at an effect's absence, as a share of the range: there its law is still active.
 LEAST_SHARE = 1e-9
 LARGEST_SETTING = 1e6
-#: Constants that are the same for all arms of an environment: actions are shares of the limit, and identification alone
-#: knows the noise.
+#: Constants that are the same for all arms of an environment: actions are shares of the limit, and only identification
+#: uses the noise.
 NEVER_DRAWN = ("drive.limit", "drive.torque_noise")
-#: Settings of a sensor that the plant works in; noise, steps and delay are the same for all arms of an environment.
+#: Settings of a sensor that are part of the plant; noise, steps and delay are the same for all arms of an environment.
 IN_THE_PLANT = ("gain", "offset", "filter", "position")
 EXAMPLES = {"randomise": '{"payload.mass": (0.0, 0.3)}', "vary": '{"hub.inertia": 0.1}', "disturb": '{"tap_rate": 1.0}'}
 
@@ -32,9 +32,16 @@ class Disturbance:
     Attributes:
         tap_rate: taps per second.
         tap_torque: largest torque of a tap, on the hub [Nm]; each is uniform between plus and minus this.
-        tap_time: how long a tap lasts [s].
+        tap_time: duration of a tap [s].
         dropout_rate: drop-outs per second.
-        dropout_time: how long a sensor, one at a time, shows its last reading [s].
+        dropout_time: duration of a drop-out, in which one sensor repeats its last reading [s].
+
+    Raises:
+        InputError: for a setting out of bounds.
+
+    Examples:
+        >>> Disturbance(tap_rate=1.0, dropout_rate=2.0).tap_torque
+        0.5
     """
 
     tap_rate: float = 0.0
@@ -50,7 +57,7 @@ class Disturbance:
 
 
 def find_disturbance(given: Disturbance | Mapping[str, float] | None) -> Disturbance:
-    """Return a disturbance from its settings.
+    """Make a disturbance from its settings, or pass one on.
 
     Raises:
         InputError: for a setting that does not exist or a value that is none.
@@ -72,13 +79,13 @@ class Variation:
     ranges: tuple[tuple[str, float, float], ...] = ()
 
     def arm(self, arm: Arm, draws: Sequence[float]) -> Arm:
-        """Return the arm with each value set by its draw, from 0 up to 1 (ranges,)."""
+        """Set each value in the arm by its draw, from 0 up to 1 (ranges,)."""
         values = {path: low + draw * (high - low) for (path, low, high), draw in zip(self.ranges, draws, strict=True)}
         return arm.with_values(values)
 
 
 def find_variation(arm: Arm, randomise: Mapping[str, Range] | None, vary: Mapping[str, float] | None) -> tuple[Arm, Variation]:
-    """Return the arm with the effects that are to be drawn, and their ranges.
+    """Resolve the ranges of drawn values; return the arm with all drawn effects, and the ranges.
 
     Args:
         arm: the nominal one.
@@ -110,7 +117,7 @@ def find_variation(arm: Arm, randomise: Mapping[str, Range] | None, vary: Mappin
 
 
 def _check_together(arm: Arm, ranges: Sequence[tuple[str, float, float]]) -> None:
-    """Refuse a value that is drawn twice, and a gage that may lie beyond the beam's end."""
+    """Refuse a value that is drawn twice, and a gage that can lie beyond the beam's end."""
     places = [place for place, _, _ in ranges]
     for place in places:
         if places.count(place) > 1:
@@ -136,7 +143,7 @@ def _pair(path: str, given: Range) -> tuple[float, float]:
 
 
 def _place(arm: Arm, path: str) -> tuple[Arm, str]:
-    """Return the arm, with the effect if it lacks it, and the full path of a value."""
+    """Resolve the path of a value; return the arm, with the value's effect, and the full path."""
     if path in NEVER_DRAWN:
         raise InputError(f"'{path}' is the same for all arms of an environment; change it in the arm file")
     section, _, key = path.removeprefix("effects.").partition(".")
@@ -155,7 +162,7 @@ def _place(arm: Arm, path: str) -> tuple[Arm, str]:
 
 
 def _bounded(arm: Arm, path: str, low: float, high: float) -> tuple[float, float]:
-    """Return the range within the parameter's bounds, clear of the value that would take the effect's law away."""
+    """Check a range against the parameter's bounds; move its lower end off the value that would remove the effect's law."""
     parameter = arm.parameter(path)
     check_bounds(path, low, parameter)
     check_bounds(path, high, parameter)
@@ -170,5 +177,5 @@ def _is_law(effect: type[Effect]) -> bool:
 
 
 def hash_of(name: str) -> int:
-    """Return a number for a name, the same in every process."""
+    """Hash a name to a number, the same in every process."""
     return zlib.crc32(name.encode())

@@ -1,4 +1,4 @@
-"""What is drawn of an environment: the arm as it stands and the strain of the last seconds."""
+"""Pictures of an environment: the arm in its present shape and the strain of the last seconds."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from flexarm_env.env import kernel as at
+from flexarm_env.env import layout as at
 from flexarm_env.env.batch import Batch
 from flexarm_env.env.setup import Setup
 from flexarm_env.render import Renderer, Scene, beam_shape
@@ -41,25 +41,25 @@ class View:
         self.trace: deque[tuple[float, float]] = deque(maxlen=round(TRACE_TIME * setup.rate))
 
     def clear(self) -> None:
-        """Forget the strain of an episode that is over."""
+        """Clear the strain of the last episode."""
         self.trace.clear()
 
     def draw(self, batch: Batch, state: NDArray[np.float64]) -> NDArray[np.uint8] | None:
         """Draw the arm in a physical state (states,)."""
-        told = batch.told_of_first.tolist()
-        time = told[at.SAMPLE] / self.setup.rate
+        outcome = batch.first_outcome.tolist()
+        time = outcome[at.SAMPLE] / self.setup.rate
         if self.bent is not None:
-            self.trace.append((time, float(batch.shown[0, self.signals.index(self.bent)])))
+            self.trace.append((time, float(batch.sensor_output[0, self.signals.index(self.bent)])))
         times, values = np.array(self.trace).reshape(-1, 2).T
         return self.renderer.draw(
             Scene(
                 time=time,
-                hub_angle=told[0],
-                stuck=told[3] > 0.0,
+                hub_angle=outcome[at.HUB_ANGLE],
+                stuck=outcome[at.STUCK] > 0.0,
                 stations=self.stations,
                 deflection=self.shape @ state,
-                target=told[at.TARGET],
-                command=told[at.COMMAND] / batch.limit,
+                target=outcome[at.TARGET],
+                command=outcome[at.COMMAND] / batch.limit,
                 trace=(times, values),
                 title=self.title,
             )

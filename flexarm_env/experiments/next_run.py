@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 from flexarm_env.experiments.simulate import simulate
-from flexarm_env.parameters import INPUTS
+from flexarm_env.parameters import INPUTS, reading_noise
 from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
@@ -94,7 +94,7 @@ def propose(hypotheses: Mapping[str, Arm], interval: float) -> NextRun | None:
 def _readings(arm: Arm, played: Recording) -> Floats:
     """Return readings (samples, signals) over their noise."""
     run = simulate(arm, played, noise=False)
-    noise = [np.hypot(s["noise"], s["resolution"] / np.sqrt(12.0)) or 1.0 for s in arm.sensors.values()]
+    noise = [reading_noise(s) or 1.0 for s in arm.sensors.values()]
     return np.stack([run.signals[s] for s in arm.signals], axis=1) / np.array(noise)
 
 

@@ -16,14 +16,12 @@ from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.experiments.payload import check_payload, stated_payload, with_payload
 from flexarm_env.plant import layout
 from flexarm_env.recordings.recording import Recording
+from flexarm_env.thesis_drive import DERIVATIVE, GEAR_RATIO, PROPORTIONAL, command_scale
 
 Floats = NDArray[np.float64]
 
 EXPERIMENTS = ("pulse", "square", "sweep")
-#: Thesis section 2.3 [A/rad, A s/rad], on the arm's angle and the motor's speed.
-PROPORTIONAL, DERIVATIVE = 2.5308, 0.6625
-#: Limit [A] and gear ratio of the drive for which these gains, the pulses and the tones are meant; others scale them.
-USUAL_LIMIT, USUAL_GEAR_RATIO = 5.0, 1.5
+#: Pulses and tones are those for the thesis's drive; commands to others are scaled.
 FIRST_PULSE = (3.0, 0.5, 1.0)  # [A, s, s], thesis section 3.1
 SQUARE_ANGLE, SQUARE_PERIOD = np.deg2rad(50.0), 5.0
 SWEEP_ANGLE, SWEEP_FREQUENCY = np.deg2rad(35.0), 0.13
@@ -131,18 +129,10 @@ def _noise(arm: Arm, count: int, seed: int, experiment: str) -> Floats:
     return np.column_stack(draws) if draws else np.zeros((count, 0))
 
 
-def _scale(arm: Arm) -> float:
-    """What a command for the thesis's arm [A] is multiplied by for this one [A or V]."""
-    drive = arm.constants["drive"]
-    if drive["limit"] > 0.0:
-        return drive["limit"] / USUAL_LIMIT
-    return drive["resistance"] if arm.input == "voltage" else 1.0
-
-
 def _plan(arm: Arm, experiment: str, time: Floats, seed: int) -> Plan:
     if experiment != "pulse" and "arm_angle" not in arm.sensors:
         raise InputError(f"input '{experiment}' needs the signal arm_angle, which arm '{arm.name}' does not measure; use pulse")
-    scale = _scale(arm)
+    scale = command_scale(arm)
     if experiment == "pulse":
         return Plan(scale * _pulses(time, seed), None)
     if experiment == "square":
@@ -193,7 +183,7 @@ class _Rig:
         self.columns = np.arange(len(sensors))
         self.speed = _Speed(arm, rate)
         self.limit = arm.constants["drive"]["limit"]
-        scale, gears = _scale(arm), USUAL_GEAR_RATIO / arm.constants["drive"]["gear_ratio"]
+        scale, gears = command_scale(arm), GEAR_RATIO / arm.constants["drive"]["gear_ratio"]
         self.gains = (scale * PROPORTIONAL, scale * gears * DERIVATIVE)
 
     def run(self, plan: Plan) -> tuple[Floats, Floats]:

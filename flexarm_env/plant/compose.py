@@ -14,23 +14,18 @@ therefore `forceinline` (a quarter of the time of a step with an event); inlined
 from __future__ import annotations
 
 import ast
-import hashlib
-import importlib.util
 import inspect
 import logging
-import os
-import sys
 import textwrap
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 import numba
 
 from flexarm_env.effects.base import PORT_ARGUMENTS
-from flexarm_env.files import write_whole
+from flexarm_env.generated import generated_module, without_imports
 
 #: What a port's switch returns where no law is active.
 DEFAULTS = {"factor": "1.0", "presliding": "level", "drive": "command", "ramp": "command", "sensor": "reading"}
@@ -87,14 +82,6 @@ FILES = (
 Law = tuple[str, str, Callable[..., float], tuple[str, ...]]  # port, effect, function, names of its parameters
 
 
-def cache_folder() -> Path:
-    """Folder of the compiled kernels: $FLEXARM_CACHE, or flexarm in the user's cache."""
-    base = os.environ.get("FLEXARM_CACHE")
-    if base:
-        return Path(base)
-    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "flexarm"
-
-
 def _law_source(name: str, function: Callable[..., float]) -> str:
     source = textwrap.dedent(vars(function).get("source") or inspect.getsource(function))
     body = source[source.index("def ") :]
@@ -117,20 +104,6 @@ def _switch(port: str, laws: Sequence[Law]) -> str:
         lines += [f"    if kind == {kind}:", f"        return {name}({', '.join(passed)})"]
     lines.append(f"    return {default}")
     return "\n\n".join([*sources, "\n".join(lines)])
-
-
-def _plain(path: Path) -> str:
-    """Source of a kernel file without its imports, which the generated module brings itself."""
-    lines, skipping = [], False
-    for line in path.read_text(encoding="utf-8").splitlines():
-        starts = line.startswith(("from ", "import "))
-        if starts:
-            skipping = line.rstrip().endswith("(")
-        elif skipping:
-            skipping = not line.startswith(")")
-        elif "= NDArray[" not in line:
-            lines.append(line)
-    return "\n".join(lines)
 
 
 class _Compiled(ast.NodeTransformer):
@@ -178,9 +151,9 @@ def source_of(laws: Sequence[Law]) -> str:
     """Text of the kernel with these laws in its switches, before it is given signatures and unsigned indices."""
     here = Path(__file__).parent
     imports = ["import math", "import numpy as np", "from numba import boolean, float64, int64, njit, uint64"]
-    parts = [*imports, _plain(here / "layout.py")]
+    parts = [*imports, without_imports(here / "layout.py")]
     parts += [_switch(port, laws) for port in PORT_ARGUMENTS]
-    parts += [_plain(here / file) for file in FILES]
+    parts += [without_imports(here / file) for file in FILES]
     text = "\n\n".join(parts) + "\n"
     return text
 
@@ -202,18 +175,9 @@ def _compose(laws: tuple[Law, ...]) -> ModuleType:
 @lru_cache(maxsize=8)
 def _module(text: str) -> ModuleType:
     own = Path(__file__).read_text(encoding="utf-8")
-    stamp = hashlib.sha256(f"{numba.__version__}\n{own}\n{text}".encode()).hexdigest()[:16]
-    name = f"flexarm_kernel_{stamp}"
-    path = cache_folder() / f"{name}.py"
-    if not path.exists():
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_whole(path, ast.unparse(_Compiled().visit(ast.parse(text))))
-    if not any((path.parent / "__pycache__").glob(f"{name}*.nbi")):
-        logging.getLogger(__name__).warning("Compiling the plant, once for these effects: about 30 s")
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None
-    assert spec.loader is not None
-    module: Any = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    spec.loader.exec_module(module)
-    return module
+    return generated_module(
+        "flexarm_kernel",
+        f"{numba.__version__}\n{own}\n{text}",
+        lambda: ast.unparse(_Compiled().visit(ast.parse(text))),
+        lambda: logging.getLogger(__name__).warning("Compiling the plant, once for these effects: about 30 s"),
+    )

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexarm_env.thesis_drive import GEAR_RATIO
+
 #: Tables 2.1 and A.1, each on the thesis's side of the gears: kg m², Nm, Nms, rad.
 TABLE = {
-    "N": 1.5,
+    "N": GEAR_RATIO,
     "J_m": 0.00193,
     "J_hub": 0.00129,
     "J_a": 0.158,

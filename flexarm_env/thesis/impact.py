@@ -14,8 +14,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from flexarm_env.controllers.pd import DERIVATIVE, PROPORTIONAL
 from flexarm_env.thesis.constants import TABLE
+from flexarm_env.thesis_drive import DERIVATIVE, LIMIT, PROPORTIONAL
 
 Floats = NDArray[np.float64]
 
@@ -59,7 +59,7 @@ def follow(
     t, stride = TABLE, round(interval / STEP)
     numbers = np.array(
         [t["N"], t["kphi"], t["J_m"], arm_inertia, t["b_m"], t["b_s"], t["T_mf"], t["T_af"], t["T_ms"], t["T_as"], gap, rate,
-         PROPORTIONAL, DERIVATIVE, 5.0, float(printed)]
+         PROPORTIONAL, DERIVATIVE, LIMIT, float(printed)]
     )  # fmt: skip
     out = np.zeros((len(target), 5))
     march(numbers, np.ascontiguousarray(target), STEP, stride, out)

@@ -8,15 +8,14 @@ import numpy as np
 
 from flexarm_env.arm import Arm
 from flexarm_env.controllers import make_controller
-from flexarm_env.controllers.pd import DERIVATIVE, PROPORTIONAL
 from flexarm_env.controllers.vibration import VibrationSuppression
 from flexarm_env.thesis import arms, continuous
 from flexarm_env.thesis.constants import PINNED_DELAY, TABLE
 from flexarm_env.thesis.law import Law
 from flexarm_env.thesis.runs import DURATION, INTERVAL, PULSE, Floats, Run, pulse, run
+from flexarm_env.thesis_drive import DERIVATIVE, LIMIT, PROPORTIONAL
 
 SLEW = np.deg2rad(100.0)
-LIMIT = 5.0  # [A]
 #: K_mo at high speed, K_mo at low speed, and friction compensation at low speed, of Figs. 4.15 to 4.18.
 GAINS = {
     "pd": (0.0, 0.0, False),

@@ -7,7 +7,7 @@ import pytest
 from numba import njit
 from scipy import stats
 
-from flexarm_env.env.kernel import EDGES, GOLDEN, LAYER_AREA, mixed, normal
+from flexarm_env.env.draws import EDGES, GOLDEN, LAYER_AREA, mixed, normal
 
 DRAWS = 1_000_000
 

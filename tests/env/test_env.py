@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import doctest
 import subprocess
 import sys
 import warnings
@@ -15,13 +14,14 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
 import flexarm_env
 from flexarm_env import Arm
-from flexarm_env.env import kernel as at
-from flexarm_env.env import pages
-from flexarm_env.env.flexarm import FlexArmEnv
-from flexarm_env.registration import ENVIRONMENTS, VARIANTS
+from flexarm_env.env import FlexArmEnv
+from flexarm_env.env import layout as at
+from flexarm_env.registration import IDS
+from flexarm_env.tasks import COMMON_TERMS
 
-IDS = [f"FlexArm/{name}{variant}-v0" for name in ENVIRONMENTS for variant in VARIANTS]
 MODES = [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP]
+#: Weights of the terms that the thesis's tasks have.
+WEIGHTS = {term.name: term.weight for term in COMMON_TERMS}
 TROUBLE = {"tap_rate": 4.0, "dropout_rate": 4.0}
 
 
@@ -102,19 +102,6 @@ def test_two_processes_give_the_same_bits() -> None:
     assert len(runs[0].stdout.strip()) == 64
 
 
-def test_the_pages_run() -> None:
-    result = doctest.testmod(pages)
-    assert result.attempted >= 15
-    assert result.failed == 0
-
-
-@pytest.mark.parametrize("env", [pages.SlewEnv, pages.TrackEnv, pages.DampEnv])
-def test_the_pages_have_gymnasiums_headings(env: type) -> None:
-    headings = ["Description", "Action Space", "Observation Space", "Rewards", "Starting State", "Episode End", "Arguments"]
-    for heading in [*headings, "Version History"]:
-        assert f"## {heading}" in (env.__doc__ or "")
-
-
 def make(**arguments: object) -> gym.Env:
     return gym.make("FlexArm/Slew-v0", **arguments)
 
@@ -135,7 +122,7 @@ def test_the_cost_of_vibration_is_by_the_length_that_was_drawn() -> None:
     info = env.step(np.zeros(1))[4]
     length = env.drawn_arm().constants["beam"]["length"]
     assert 1.5 < length < 2.0
-    assert info["reward_vibration"] == pytest.approx(-env.setup.task.weights["vibration"] * abs(info["tip_deflection"]) / length)
+    assert info["reward_vibration"] == pytest.approx(-WEIGHTS["vibration"] * abs(info["tip_deflection"]) / length)
 
 
 def test_an_action_beyond_the_limit_is_clipped() -> None:

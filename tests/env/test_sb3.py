@@ -14,10 +14,8 @@ from stable_baselines3 import PPO, SAC
 from stable_baselines3.common.env_checker import check_env
 from stable_baselines3.common.vec_env import DummyVecEnv
 
-from flexarm_env.registration import ENVIRONMENTS, VARIANTS
+from flexarm_env.registration import IDS
 from flexarm_env.sb3 import make_vec
-
-IDS = [f"FlexArm/{name}{variant}-v0" for name in ENVIRONMENTS for variant in VARIANTS]
 
 
 @pytest.mark.parametrize("id", IDS)

@@ -16,7 +16,7 @@ from flexarm_env.identify.replay.initial_state import Stretch, find_start
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.replay.scales import scales_of
 from flexarm_env.identify.settings import SETTINGS, Settings
-from flexarm_env.parameters import INPUTS
+from flexarm_env.parameters import INPUTS, reading_noise
 from flexarm_env.plant.plant import NO_INTERVALS, Plant
 from flexarm_env.recordings.recording import Recording
 
@@ -105,7 +105,7 @@ def _check(arm: Arm, recording: Recording, fewest: int) -> None:
 
 def _noise(arm: Arm, signals: list[str], measured: list[Floats], settings: Settings) -> Floats:
     numbers = settings.preparation
-    stated = [np.hypot(arm.sensors[s]["noise"], arm.sensors[s]["resolution"] / np.sqrt(12)) for s in signals]
+    stated = [reading_noise(arm.sensors[s]) for s in signals]
     spread = np.ptp(np.concatenate(measured), axis=0)
     pairs = zip(stated, spread, strict=True)
     return np.array([n if n > 0.0 else max(numbers.default_noise * w, numbers.least_noise) for n, w in pairs])

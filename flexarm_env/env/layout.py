@@ -1,0 +1,66 @@
+"""Places of all numbers of a batch of arms, which lie in one array: the kernels pay for each array that they are given."""
+
+from __future__ import annotations
+
+from numba import njit
+
+# --- settings: one number each, for all arms; the weights of the reward's terms come last
+(
+    INTERVAL, HALF_PERIOD, RANGE, LIMIT, TAP_CHANCE, TAP_TORQUE, TAP_SAMPLES, DROP_CHANCE, DROP_SAMPLES, TARGET_SCALE, WEIGHTS,
+) = range(11)  # fmt: skip
+
+# --- columns of each arm's own numbers
+FIRST_TARGET, FIRST_ANGLE, TAP_LEFT, TAP, DROP_LEFT, DROPPED, LENGTH, PER_TORQUE = range(8)
+COLUMNS = 8
+
+# --- rows of the outcome of a step, one number for each arm; the reward's terms come last
+REWARD, TERMINATED, SAMPLE, HUB_ANGLE, HUB_SPEED, TIP_DEFLECTION, STUCK, TARGET, COMMAND, TERMS = range(10)
+#: Of the plant's truth: angle, speed, deflection, stuck. One more says whether the arm is lost, its numbers no longer finite.
+TRUTH_ROWS = 4
+
+# --- columns of each sensor's numbers
+NOISE, STEP, PER_STEP, LARGEST, PER_SCALE, WHOLE_DELAY, SHARE_OF_DELAY = range(7)
+SENSOR = 7
+
+# --- places: where each quantity begins in the common array, and how far one arm's or row's numbers are from the next
+(
+    AT_SETTINGS, AT_SENSORS, AT_OWN, AT_EXACT, EXACT_EACH, AT_REQUESTED, AT_PUSHES, AT_HISTORY, AT_SENSOR_OUTPUT, AT_OUTCOME,
+    ROW_EACH, SIGNALS, DEPTH,
+) = range(13)  # fmt: skip
+PLACES = 13
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
+def row_of(places, row, arm):
+    """Locate an arm's number in a row of the outcome."""
+    return places[AT_OUTCOME] + row * places[ROW_EACH] + arm
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
+def own_of(places, arm):
+    """Locate an arm's own numbers."""
+    return places[AT_OWN] + arm * COLUMNS
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
+def exact_of(places, arm):
+    """Locate an arm's readings without noise, delay and steps."""
+    return places[AT_EXACT] + arm * places[EXACT_EACH]
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
+def truth_of(places, arm):
+    """Locate an arm's truth, behind its readings without noise."""
+    return exact_of(places, arm) + places[SIGNALS]
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
+def output_of(places, arm):
+    """Locate an arm's last sensor output."""
+    return places[AT_SENSOR_OUTPUT] + arm * places[SIGNALS]
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
+def history_of(places, arm):
+    """Locate an arm's past readings (depth, signals)."""
+    return places[AT_HISTORY] + arm * places[DEPTH] * places[SIGNALS]

@@ -1,0 +1,66 @@
+"""Python modules made of text, in the user's cache, each named by the hash of all that it depends on.
+
+numba caches what it compiles of such a module across processes. A change in the text gives another module, so that nothing
+that was compiled of an older text is ever used.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+
+from flexarm_env.files import write_whole
+
+
+def cache_folder() -> Path:
+    """Locate the folder of the compiled kernels: $FLEXARM_CACHE, or flexarm in the user's cache."""
+    base = os.environ.get("FLEXARM_CACHE")
+    if base:
+        return Path(base)
+    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "flexarm"
+
+
+def without_imports(path: Path) -> str:
+    """Read a kernel file without its imports, which the generated module brings itself."""
+    lines, skipping = [], False
+    for line in path.read_text(encoding="utf-8").splitlines():
+        starts = line.startswith(("from ", "import "))
+        if starts:
+            skipping = line.rstrip().endswith("(")
+        elif skipping:
+            skipping = not line.startswith(")")
+        elif "= NDArray[" not in line:
+            lines.append(line)
+    return "\n".join(lines)
+
+
+def generated_module(
+    prefix: str, depends_on: str, text: Callable[[], str], notice: Callable[[], None] | None = None
+) -> ModuleType:
+    """Import a generated module, writing it first where it is not in the cache.
+
+    Args:
+        prefix: of the module's name.
+        depends_on: all text that the module depends on, of which its name is the hash.
+        text: makes the module's source.
+        notice: called where nothing compiled of the module is in the cache yet.
+    """
+    name = f"{prefix}_{hashlib.sha256(depends_on.encode()).hexdigest()[:16]}"
+    path = cache_folder() / f"{name}.py"
+    if not path.exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(path, text())
+    if notice and not any((path.parent / "__pycache__").glob(f"{name}*.nbi")):
+        notice()
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+    return module
