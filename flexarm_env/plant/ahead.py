@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from numba import njit
 
-from flexarm_env.plant.layout import HEADER, Numbers
+from flexarm_env.plant import layout as at
+from flexarm_env.plant.layout import Numbers
 from flexarm_env.plant.propagate import LONG_REACH, RESPONSE, advance, reach_of, respond
 
 
@@ -19,7 +20,7 @@ def start_copy(blocks: int, s: Numbers, w: Numbers, force: int, clock: int) -> N
     """Begin the copy of the motion in w at `clock` anew (see arrive)."""
     w[clock] = 0.0
     for i in range(2 * blocks):
-        w[clock + 1 + i] = s[HEADER + i]
+        w[clock + 1 + i] = s[at.HEADER + i]
     for i in range(6 * blocks):
         w[clock + 1 + 2 * blocks + i] = w[force + i]
 
@@ -52,16 +53,16 @@ def arrive(
 
 @njit(forceinline=True)
 def rate_of(
-    d: Numbers, row: int, c0: int, c1: int, blocks: int, z: Numbers, at: int, w: Numbers, force: int,
+    d: Numbers, row: int, c0: int, c1: int, blocks: int, z: Numbers, first: int, w: Numbers, force: int,
     t: float,
 ) -> float:  # fmt: skip
-    """Return row · ż, for z at `at` in array z, t after the force began."""
+    """Return row · ż, for z at `first` in array z, t after the force began."""
     total = 0.0
     for k in range(blocks):
         i = 2 * k
         f = w[force + i] + t * (w[force + i + 2 * blocks] + 0.5 * t * w[force + i + 4 * blocks])
         g = w[force + i + 1] + t * (w[force + i + 1 + 2 * blocks] + 0.5 * t * w[force + i + 1 + 4 * blocks])
-        p, q = z[at + i], z[at + i + 1]
+        p, q = z[first + i], z[first + i + 1]
         total += d[row + i] * (q + f) + d[row + i + 1] * (g - d[c0 + k] * p - d[c1 + k] * q)
     return total
 

@@ -19,6 +19,7 @@ import importlib.util
 import inspect
 import logging
 import os
+import re
 import sys
 import textwrap
 from collections.abc import Callable, Sequence
@@ -84,6 +85,9 @@ FILES = (
     "batch.py",
 )
 
+#: What kernels write before the places of layout.py, whose names stand bare in the generated module.
+PREFIX = re.compile(r"\bat\.(?=[A-Z])")
+
 Law = tuple[str, str, Callable[..., float], tuple[str, ...]]  # port, effect, function, names of its parameters
 
 
@@ -120,7 +124,7 @@ def _switch(port: str, laws: Sequence[Law]) -> str:
 
 
 def _plain(path: Path) -> str:
-    """Source of a kernel file without its imports, which the generated module brings itself."""
+    """Source of a kernel file without its imports, which the generated module brings itself, and without `at.`."""
     lines, skipping = [], False
     for line in path.read_text(encoding="utf-8").splitlines():
         starts = line.startswith(("from ", "import "))
@@ -130,7 +134,7 @@ def _plain(path: Path) -> str:
             skipping = not line.startswith(")")
         elif "= NDArray[" not in line:
             lines.append(line)
-    return "\n".join(lines)
+    return PREFIX.sub("", "\n".join(lines))
 
 
 class _Compiled(ast.NodeTransformer):

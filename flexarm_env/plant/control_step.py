@@ -6,26 +6,10 @@ import math
 
 from numba import njit
 
+from flexarm_env.plant import layout as at
 from flexarm_env.plant.glide import glide
 from flexarm_env.plant.laws import drive_law, ramp_law
-from flexarm_env.plant.layout import (
-    BODIES,
-    COMMAND,
-    DRIVE_LAWS,
-    EARLY_LENGTH,
-    EARLY_SUBSTEPS,
-    GLIDES,
-    INTERVAL,
-    LATE_LENGTH,
-    LATE_SUBSTEPS,
-    MODE,
-    POINTS,
-    RAMP_LAWS,
-    TORQUE_LAWS,
-    VARYING,
-    Numbers,
-    Places,
-)
+from flexarm_env.plant.layout import Numbers, Places
 from flexarm_env.plant.slide import slide
 from flexarm_env.plant.slide_table import DEPTH, prepare_slide, slide_table, table_size
 from flexarm_env.plant.substep import UNTABULATED, substep, substep_scratch
@@ -34,23 +18,23 @@ from flexarm_env.plant.substep import UNTABULATED, substep, substep_scratch
 @njit
 def scratch_size(n: Places) -> int:
     """How many numbers of scratch the kernel needs."""
-    return substep_scratch(n) + (table_size(n) if n[VARYING] else 0)
+    return substep_scratch(n) + (table_size(n) if n[at.VARYING] else 0)
 
 
 @njit(forceinline=True)
 def let_through(d: Numbers, n: Places, s: Numbers, command: float) -> float:
     """Return what the drive makes of a command, and remember it."""
-    place, before = n[DRIVE_LAWS], s[COMMAND]
+    place, before = n[at.DRIVE_LAWS], s[at.COMMAND]
     for j in range(n[place]):
-        command = drive_law(n[place + 1 + 2 * j], command, before, d[INTERVAL], d, n[place + 2 + 2 * j])
-    s[COMMAND] = command
+        command = drive_law(n[place + 1 + 2 * j], command, before, d[at.INTERVAL], d, n[place + 2 + 2 * j])
+    s[at.COMMAND] = command
     return command
 
 
 @njit(forceinline=True)
 def on_the_way(d: Numbers, n: Places, before: float, command: float, start: float, end: float) -> float:
     """Return the mean of what a drive gives from start to end [s] after it was told to leave one command for the next."""
-    place = n[RAMP_LAWS]
+    place = n[at.RAMP_LAWS]
     for j in range(n[place]):
         command = ramp_law(n[place + 1 + 2 * j], command, before, start, end, d, n[place + 2 + 2 * j])
     return command
@@ -59,7 +43,7 @@ def on_the_way(d: Numbers, n: Places, before: float, command: float, start: floa
 @njit
 def rests(n: Places, mode: int) -> bool:
     """Whether the hub of an arm of one body is held and no force varies for that."""
-    return n[BODIES] == 1 and mode == 1 and n[n[TORQUE_LAWS]] == 0
+    return n[at.BODIES] == 1 and mode == 1 and n[n[at.TORQUE_LAWS]] == 0
 
 
 @njit
@@ -68,7 +52,7 @@ def walk(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int,
     whole, done, level = 1 << DEPTH, 0, 0
     own, own_mode, own_level = substep_scratch(n), UNTABULATED, 0
     while done < whole:
-        mode, part = int(s[MODE]), whole >> level
+        mode, part = int(s[at.MODE]), whole >> level
         length = t * 0.5**level
         if slot >= 0 and level == 0 and rests(n, mode):
             moved = glide(d, n, s, command, length, slot, w)
@@ -92,10 +76,10 @@ def walk(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int,
 @njit(forceinline=True)
 def move(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int, w: Numbers) -> None:
     """Move the arm on by t [s] under a held command; `slot` names the tables for exactly t."""
-    if n[VARYING] and not n[POINTS]:
+    if n[at.VARYING] and not n[at.POINTS]:
         walk(d, n, s, command, t, slot, w)
         return
-    if n[GLIDES] == 2 and slot >= 0 and slide(d, n, s, command, t, True, d, slide_table(n, int(s[MODE]), slot, 0), w):
+    if n[at.GLIDES] == 2 and slot >= 0 and slide(d, n, s, command, t, True, d, slide_table(n, int(s[at.MODE]), slot, 0), w):
         return
     substep(d, n, s, command, t, slot, w)
 
@@ -103,13 +87,13 @@ def move(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int,
 @njit
 def control_step(d: Numbers, n: Places, s: Numbers, before: float, command: float, w: Numbers) -> None:
     """Move the arm on by one sample: the last command acts until the delay is over, then the new one."""
-    for _ in range(n[EARLY_SUBSTEPS]):
-        if n[GLIDES] != 1 or not glide(d, n, s, before, d[EARLY_LENGTH], 0, w):
-            move(d, n, s, before, d[EARLY_LENGTH], 0, w)
-    for j in range(n[LATE_SUBSTEPS]):
-        now = on_the_way(d, n, before, command, j * d[LATE_LENGTH], (j + 1) * d[LATE_LENGTH])
-        if n[GLIDES] != 1 or not glide(d, n, s, now, d[LATE_LENGTH], 1, w):
-            move(d, n, s, now, d[LATE_LENGTH], 1, w)
+    for _ in range(n[at.EARLY_SUBSTEPS]):
+        if n[at.GLIDES] != 1 or not glide(d, n, s, before, d[at.EARLY_LENGTH], 0, w):
+            move(d, n, s, before, d[at.EARLY_LENGTH], 0, w)
+    for j in range(n[at.LATE_SUBSTEPS]):
+        now = on_the_way(d, n, before, command, j * d[at.LATE_LENGTH], (j + 1) * d[at.LATE_LENGTH])
+        if n[at.GLIDES] != 1 or not glide(d, n, s, now, d[at.LATE_LENGTH], 1, w):
+            move(d, n, s, now, d[at.LATE_LENGTH], 1, w)
 
 
 @njit(inline="always")
@@ -117,11 +101,11 @@ def uneven_step(
     d: Numbers, n: Places, s: Numbers, before: float, command: float, interval: float, w: Numbers,
 ) -> None:  # fmt: skip
     """Like control_step, over an interval that is not the tabulated one."""
-    early = min(d[EARLY_LENGTH] * n[EARLY_SUBSTEPS], interval)
+    early = min(d[at.EARLY_LENGTH] * n[at.EARLY_SUBSTEPS], interval)
     late = interval - early
     if early > 0.0:
         move(d, n, s, before, early, UNTABULATED, w)
-    count = max(math.ceil(late / d[LATE_LENGTH] - 1e-9), 1) if late > 0.0 else 0
+    count = max(math.ceil(late / d[at.LATE_LENGTH] - 1e-9), 1) if late > 0.0 else 0
     for j in range(count):
         now = on_the_way(d, n, before, command, j * late / count, (j + 1) * late / count)
         move(d, n, s, now, late / count, UNTABULATED, w)

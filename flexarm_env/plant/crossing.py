@@ -6,8 +6,9 @@ import math
 
 from numba import njit
 
+from flexarm_env.plant import layout as at
 from flexarm_env.plant.ahead import value_at
-from flexarm_env.plant.layout import HEADER, Numbers
+from flexarm_env.plant.layout import Numbers
 from flexarm_env.plant.propagate import inlined_dot
 
 #: Shortest interval [s] that is still halved.
@@ -29,7 +30,7 @@ def amplitudes(
     for k in range(blocks):
         i = 2 * k
         a, b = d[c0 + k], d[c1 + k]
-        p, q = s[HEADER + i], s[HEADER + i + 1]
+        p, q = s[at.HEADER + i], s[at.HEADER + i + 1]
         fast = q + w[force + i]
         slow = w[force + i + 1] - a * p - b * q
         stretch = math.sqrt(a)

@@ -4,31 +4,10 @@ from __future__ import annotations
 
 from numba import njit
 
+from flexarm_env.plant import layout as at
 from flexarm_env.plant.ahead import arrive, copy_size, rate_of, start_copy, value_at
 from flexarm_env.plant.crossing import amplitudes, curvature_bound, first_crossing
-from flexarm_env.plant.layout import (
-    BLOCKS,
-    BODIES,
-    C0,
-    C1,
-    GAP,
-    GEAR_SIDE,
-    HEADER,
-    HELD_HUB,
-    HELD_MOTOR,
-    HOLD,
-    HOLD_WEIGHT,
-    HUB_DIRECTION,
-    MESH,
-    MESH_WEIGHT,
-    SPEED,
-    SPEED_WEIGHT,
-    VARYING,
-    WINDUP,
-    WINDUP_WEIGHT,
-    Numbers,
-    Places,
-)
+from flexarm_env.plant.layout import Numbers, Places
 from flexarm_env.plant.propagate import dot
 from flexarm_env.plant.stick_slip import GEAR_OPEN, applied_offset, is_stuck, load_now, record, rubs, static_budget
 
@@ -53,15 +32,15 @@ def look(
     z is the state now; the one at `end` stands in w at `trial`. The state then is left behind the copy after `size`.
     """
     here = record(n, mode)
-    c0, c1, blocks = here + n[C0], here + n[C1], n[BLOCKS]
-    bound = curvature_bound(d, row, weight, blocks, w, size, force, n[VARYING], end) + abs(o2)
+    c0, c1, blocks = here + n[at.C0], here + n[at.C1], n[at.BLOCKS]
+    bound = curvature_bound(d, row, weight, blocks, w, size, force, n[at.VARYING], end) + abs(o2)
     fourth = dot(d, weight, w, size + blocks, blocks)
     value = sign * dot(d, row, w, trial, 2 * blocks) + o0 + end * (o1 + 0.5 * end * o2)
     bend = 0.125 * end * end * bound
-    if value > bend and sign * dot(d, row, s, HEADER, 2 * blocks) + o0 > bend:
+    if value > bend and sign * dot(d, row, s, at.HEADER, 2 * blocks) + o0 > bend:
         return best
     clock = size + 2 * blocks
-    before, slope, _ = value_at(d, row, sign, o0, o1, o2, c0, c1, blocks, s, w, force, n[VARYING], clock, start)
+    before, slope, _ = value_at(d, row, sign, o0, o1, o2, c0, c1, blocks, s, w, force, n[at.VARYING], clock, start)
     if start > 0.0 and before <= 0.0:
         root = start
     elif end <= start:
@@ -69,12 +48,12 @@ def look(
     else:
         rate = sign * rate_of(d, row, c0, c1, blocks, w, trial, w, force, end) + o1 + end * o2
         root = first_crossing(
-            d, row, sign, o0, o1, o2, c0, c1, blocks, s, w, force, n[VARYING], clock, start, end,
+            d, row, sign, o0, o1, o2, c0, c1, blocks, s, w, force, n[at.VARYING], clock, start, end,
             before, slope, value, rate, bound, fourth,
         )  # fmt: skip
     if not 0.0 <= root < best:
         return best
-    arrive(d, c0, c1, blocks, s, w, force, n[VARYING], clock, root)
+    arrive(d, c0, c1, blocks, s, w, force, n[at.VARYING], clock, root)
     for i in range(2 * blocks):
         w[found_at(size, blocks) + i] = w[clock + 1 + i]
     return root
@@ -85,10 +64,10 @@ def play_edge(d: Numbers, s: Numbers, mode: int, side: float) -> float:
     """Return what the angles of held bodies and half the gap add to the windup towards a side: teeth touch from 0 up."""
     held = 0.0
     if is_stuck(mode, 1):
-        held += s[HELD_MOTOR]
+        held += s[at.HELD_MOTOR]
     if is_stuck(mode, 0):
-        held -= s[HELD_HUB]
-    return side * held - 0.5 * d[GAP]
+        held -= s[at.HELD_HUB]
+    return side * held - 0.5 * d[at.GAP]
 
 
 @njit
@@ -101,17 +80,17 @@ def look_at_gears(
     Teeth push and never pull: they part when their torque, damping included, falls to zero, and push again when it
     rises, or when they meet anew.
     """
-    closed = s[GEAR_SIDE] == side
+    closed = s[at.GEAR_SIDE] == side
     if not closed and not mode & GEAR_OPEN:
         return best
     here = record(n, mode)
     edge = play_edge(d, s, mode, side)
-    row, weight, sign = here + n[MESH], here + n[MESH_WEIGHT], side
+    row, weight, sign = here + n[at.MESH], here + n[at.MESH_WEIGHT], side
     if not closed:
-        overlap = side * dot(d, here + n[WINDUP], s, HEADER, 2 * n[BLOCKS]) + edge
+        overlap = side * dot(d, here + n[at.WINDUP], s, at.HEADER, 2 * n[at.BLOCKS]) + edge
         sign = -side
         if overlap <= 0.0:
-            row, weight = here + n[WINDUP], here + n[WINDUP_WEIGHT]
+            row, weight = here + n[at.WINDUP], here + n[at.WINDUP_WEIGHT]
     return look(
         d, n, mode, row, weight, sign, edge if closed else -edge, 0.0, 0.0,
         s, w, trial, force, size, start, end, best,
@@ -128,10 +107,10 @@ def look_at_overlap(
         return best
     here = record(n, mode)
     edge = play_edge(d, s, mode, side)
-    if side * dot(d, here + n[WINDUP], s, HEADER, 2 * n[BLOCKS]) + edge <= 0.0:
+    if side * dot(d, here + n[at.WINDUP], s, at.HEADER, 2 * n[at.BLOCKS]) + edge <= 0.0:
         return best
     return look(
-        d, n, mode, here + n[WINDUP], here + n[WINDUP_WEIGHT], side, edge, 0.0, 0.0,
+        d, n, mode, here + n[at.WINDUP], here + n[at.WINDUP_WEIGHT], side, edge, 0.0, 0.0,
         s, w, trial, force, size, start, end, best,
     )  # fmt: skip
 
@@ -146,29 +125,29 @@ def next_event(
     If its time is not 0, the state then is left in w (see found_at).
     """
     here = record(n, mode)
-    blocks = n[BLOCKS]
-    amplitudes(d, here + n[C0], here + n[C1], blocks, s, w, force, n[VARYING], end, size)
+    blocks = n[at.BLOCKS]
+    amplitudes(d, here + n[at.C0], here + n[at.C1], blocks, s, w, force, n[at.VARYING], end, size)
     start_copy(blocks, s, w, force, size + 2 * blocks)
     best, kind, which = 2.0 * end + 1.0, NOTHING, 0.0
-    for body in range(n[BODIES]):
+    for body in range(n[at.BODIES]):
         if not rubs(d, n, body):
             continue
         if not is_stuck(mode, body):
-            row, weight = here + n[SPEED] + body * 2 * blocks, here + n[SPEED_WEIGHT] + body * blocks
-            direction = s[HUB_DIRECTION + body]
+            row, weight = here + n[at.SPEED] + body * 2 * blocks, here + n[at.SPEED_WEIGHT] + body * blocks
+            direction = s[at.HUB_DIRECTION + body]
             when = look(d, n, mode, row, weight, direction, 0.0, 0.0, 0.0, s, w, trial, force, size, start, end, best)
             if when < best:
                 best, kind, which = when, STOP, float(body)
             continue
-        row, weight = here + n[HOLD] + body * 2 * blocks, here + n[HOLD_WEIGHT] + body * blocks
+        row, weight = here + n[at.HOLD] + body * 2 * blocks, here + n[at.HOLD_WEIGHT] + body * blocks
         o0 = applied_offset(d, n, s, mode, body, command, w, coefficients, 0)
-        o1 = applied_offset(d, n, s, mode, body, command, w, coefficients, 1) if n[VARYING] else 0.0
-        o2 = applied_offset(d, n, s, mode, body, command, w, coefficients, 2) if n[VARYING] else 0.0
+        o1 = applied_offset(d, n, s, mode, body, command, w, coefficients, 1) if n[at.VARYING] else 0.0
+        o2 = applied_offset(d, n, s, mode, body, command, w, coefficients, 2) if n[at.VARYING] else 0.0
         load = load_now(d, n, s, mode)
         for side in range(2):
             push = 1.0 - 2.0 * side
-            budget = static_budget(d, n, s, body, push, s[HELD_HUB + body], load)
-            if start == 0.0 and push * (o0 + dot(d, row, s, HEADER, 2 * blocks)) > budget:
+            budget = static_budget(d, n, s, body, push, s[at.HELD_HUB + body], load)
+            if start == 0.0 and push * (o0 + dot(d, row, s, at.HEADER, 2 * blocks)) > budget:
                 return 0.0, BREAK, float(body)
             when = look(
                 d, n, mode, row, weight, -push, budget - push * o0, -push * o1, -push * o2,
@@ -176,7 +155,7 @@ def next_event(
             )  # fmt: skip
             if when < best:
                 best, kind, which = when, BREAK, float(body)
-    for side in range(2 if d[GAP] > 0.0 else 0):
+    for side in range(2 if d[at.GAP] > 0.0 else 0):
         gear_side = 1.0 - 2.0 * side
         when = look_at_gears(d, n, s, mode, w, trial, force, size, start, end, gear_side, best)
         if when < best:

@@ -71,22 +71,22 @@ def block_response(c0: float, c1: float, t: float) -> tuple[float, float, float,
 
 
 @njit(forceinline=True)
-def respond(d: Numbers, c0: int, c1: int, blocks: int, t: float, table: Numbers, at: int) -> None:
-    """Fill table from `at` on with the responses of all blocks after t."""
+def respond(d: Numbers, c0: int, c1: int, blocks: int, t: float, table: Numbers, first: int) -> None:
+    """Fill table from `first` on with the responses of all blocks after t."""
     for k in range(blocks):
         c, s, r0, r1, r2 = block_response(d[c0 + k], d[c1 + k], t)
-        i = at + RESPONSE * k
+        i = first + RESPONSE * k
         table[i], table[i + 1], table[i + 2], table[i + 3], table[i + 4] = c, s, r0, r1, r2
 
 
 @njit(forceinline=True)
 def advance(
-    d: Numbers, c0: int, c1: int, blocks: int, table: Numbers, at: int, z: Numbers, start: int, w: Numbers,
+    d: Numbers, c0: int, c1: int, blocks: int, table: Numbers, first: int, z: Numbers, start: int, w: Numbers,
     force: int, varying: int, out: int,
 ) -> None:  # fmt: skip
-    """Write to w at `out`, which may be its own place, where z at `start` gets to by the time of the table at `at`."""
+    """Write to w at `out`, which may be its own place, where z at `start` gets to by the time of the table at `first`."""
     for k in range(blocks):
-        j = at + RESPONSE * k
+        j = first + RESPONSE * k
         c, r, r0 = table[j], table[j + 1], table[j + 2]
         a, b = d[c0 + k], d[c1 + k]
         p, q = z[start + 2 * k], z[start + 2 * k + 1]
@@ -107,22 +107,22 @@ def advance(
 
 
 @njit(forceinline=True)
-def inlined_dot(d: Numbers, row: int, z: Numbers, at: int, count: int) -> float:
-    """Return the row at `row` in d times the numbers at `at` in z, as three sums that need not wait for each other."""
+def inlined_dot(d: Numbers, row: int, z: Numbers, first: int, count: int) -> float:
+    """Return the row at `row` in d times the numbers at `first` in z, as three sums that need not wait for each other."""
     one, two, three = 0.0, 0.0, 0.0
     i = 0
     while i + 2 < count:
-        one += d[row + i] * z[at + i]
-        two += d[row + i + 1] * z[at + i + 1]
-        three += d[row + i + 2] * z[at + i + 2]
+        one += d[row + i] * z[first + i]
+        two += d[row + i + 1] * z[first + i + 1]
+        three += d[row + i + 2] * z[first + i + 2]
         i += 3
     while i < count:
-        one += d[row + i] * z[at + i]
+        one += d[row + i] * z[first + i]
         i += 1
     return one + two + three
 
 
 @njit
-def dot(d: Numbers, row: int, z: Numbers, at: int, count: int) -> float:
+def dot(d: Numbers, row: int, z: Numbers, first: int, count: int) -> float:
     """Return what inlined_dot does, where less code is worth more than a call."""
-    return inlined_dot(d, row, z, at, count)
+    return inlined_dot(d, row, z, first, count)

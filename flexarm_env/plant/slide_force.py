@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from flexarm_env.plant.layout import BLOCKS, BODIES, DRIVERS, HEADER, HELD_HUB, HOLDS_ANGLE, TIME, Numbers, Places
+from flexarm_env.plant import layout as at
+from flexarm_env.plant.layout import Numbers, Places
 from flexarm_env.plant.propagate import dot, inlined_dot
 from flexarm_env.plant.slide_table import NODES, ORDER
 from flexarm_env.plant.stick_slip import apply_laws, record
@@ -33,7 +34,7 @@ def fit_force(
     `inputs` are the drivers, `start` the motion and after it the forces at the start. Return whether the sweeps
     converge and the quartic is small.
     """
-    blocks, bodies, drivers = n[BLOCKS], n[BODIES], n[DRIVERS]
+    blocks, bodies, drivers = n[at.BLOCKS], n[at.BODIES], n[at.DRIVERS]
     size, quantities = 2 * blocks, 2 * bodies
     here = record(n, mode)
     drives = rows + ORDER * quantities * size
@@ -44,12 +45,12 @@ def fit_force(
     values = new + bodies
     free = values + ORDER * bodies
     for i in range(ORDER * quantities):
-        total = inlined_dot(tab, rows + i * size, s, HEADER, size)
+        total = inlined_dot(tab, rows + i * size, s, at.HEADER, size)
         for j in range(drivers):
             total += tab[drives + i * drivers + j] * w[inputs + j]
         q = i % quantities
         if q < bodies:
-            total += d[here + n[HOLDS_ANGLE] + q] * s[HELD_HUB + q]
+            total += d[here + n[at.HOLDS_ANGLE] + q] * s[at.HELD_HUB + q]
         w[free + i] = total
     for i in range(ORDER * bodies):
         w[values + i] = w[changes + i] = 0.0
@@ -63,7 +64,7 @@ def fit_force(
             for q in range(quantities):
                 i = node * quantities + q
                 w[motion + q] = w[free + i] + dot(tab, shifts + i * bodies * ORDER, w, changes, bodies * ORDER)
-            apply_laws(d, n, s, mode, s[TIME] + NODES[node] * length, w, motion, new)
+            apply_laws(d, n, s, mode, s[at.TIME] + NODES[node] * length, w, motion, new)
             for body in range(bodies):
                 value = w[new + body] - w[forces + body]
                 change = max(change, abs(value - w[values + body * ORDER + node]))

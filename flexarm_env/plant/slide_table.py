@@ -11,29 +11,9 @@ import math
 import numpy as np
 from numba import njit
 
+from flexarm_env.plant import layout as at
 from flexarm_env.plant.crossing import stray
-from flexarm_env.plant.layout import (
-    ANGLE,
-    BLOCKS,
-    BODIES,
-    C0,
-    C1,
-    DRIVERS,
-    FORCE_COLUMNS,
-    FORCING,
-    HOLD,
-    HOLD_WEIGHT,
-    MESH,
-    MESH_WEIGHT,
-    POINTS,
-    REACH,
-    SPEED,
-    SPEED_WEIGHT,
-    VARYING,
-    W_HUB,
-    Numbers,
-    Places,
-)
+from flexarm_env.plant.layout import Numbers, Places
 from flexarm_env.plant.propagate import INVERSE_FACTORIALS, LONG_REACH
 from flexarm_env.plant.stick_slip import is_stuck, record
 
@@ -48,7 +28,7 @@ PER_BLOCK = 4
 
 
 @njit
-def long_response(c0: float, c1: float, t: float, r: Numbers, at: int) -> None:
+def long_response(c0: float, c1: float, t: float, r: Numbers, first: int) -> None:
     """Write C, S, R₀ to R₄ of one block after time t [s] to r: as block_response does, for higher orders."""
     doublings = 0
     while abs(c0) * t * t + abs(c1) * t > LONG_REACH:
@@ -73,52 +53,52 @@ def long_response(c0: float, c1: float, t: float, r: Numbers, at: int) -> None:
         r0 += c * r0 + s * s
         c, s = c * c - c0 * s * s, s * (2.0 * c - c1 * s)
         t *= 2.0
-    r[at], r[at + 1], r[at + 2], r[at + 3], r[at + 4], r[at + 5], r[at + 6] = c, s, r0, r1, r2, r3, r4
+    r[first], r[first + 1], r[first + 2], r[first + 3], r[first + 4], r[first + 5], r[first + 6] = c, s, r0, r1, r2, r3, r4
 
 
 @njit
 def table_size(n: Places) -> int:
     """How many numbers the table of a step takes (see prepare_slide)."""
-    blocks, bodies = n[BLOCKS], n[BODIES]
+    blocks, bodies = n[at.BLOCKS], n[at.BODIES]
     size = PER_BLOCK * blocks + (bodies + 1) * bodies + 7
-    if n[VARYING]:
+    if n[at.VARYING]:
         nodes = ORDER * 2 * bodies  # of each quantity
-        size += nodes * (2 * blocks + n[DRIVERS] + ORDER * bodies) + 2 * ORDER * bodies * blocks
+        size += nodes * (2 * blocks + n[at.DRIVERS] + ORDER * bodies) + 2 * ORDER * bodies * blocks
     return size
 
 
 @njit
 def slides(n: Places) -> bool:
     """Whether the arm has tables for slide: where a glide would not do, and no drag varies along the beam."""
-    return n[POINTS] == 0 and (n[VARYING] > 0 or n[BODIES] == 2)
+    return n[at.POINTS] == 0 and (n[at.VARYING] > 0 or n[at.BODIES] == 2)
 
 
 @njit
 def slide_table(n: Places, mode: int, slot: int, level: int) -> int:
     """Where the table of a substep stands, halved so often (see glide.prepare)."""
-    return record(n, mode) + n[REACH] + (slot * (DEPTH + 1 if n[VARYING] else 1) + level) * table_size(n)
+    return record(n, mode) + n[at.REACH] + (slot * (DEPTH + 1 if n[at.VARYING] else 1) + level) * table_size(n)
 
 
 @njit
 def tested_row(n: Places, mode: int, row: int) -> tuple[int, int]:
     """Return the places of the row that tells of a body's event, or (last) of the gears', and of its weights."""
-    here, blocks = record(n, mode), n[BLOCKS]
-    if row == n[BODIES]:
-        return here + n[MESH], here + n[MESH_WEIGHT]
+    here, blocks = record(n, mode), n[at.BLOCKS]
+    if row == n[at.BODIES]:
+        return here + n[at.MESH], here + n[at.MESH_WEIGHT]
     if is_stuck(mode, row):
-        return here + n[HOLD] + row * 2 * blocks, here + n[HOLD_WEIGHT] + row * blocks
-    return here + n[SPEED] + row * 2 * blocks, here + n[SPEED_WEIGHT] + row * blocks
+        return here + n[at.HOLD] + row * 2 * blocks, here + n[at.HOLD_WEIGHT] + row * blocks
+    return here + n[at.SPEED] + row * 2 * blocks, here + n[at.SPEED_WEIGHT] + row * blocks
 
 
 @njit
 def bend_by_force(d: Numbers, n: Places, mode: int, row: int, body: int, length: float) -> float:
     """How far a tested row strays from its chord, per variation of the force on a body."""
-    here, blocks = record(n, mode), n[BLOCKS]
+    here, blocks = record(n, mode), n[at.BLOCKS]
     place, weight = tested_row(n, mode, row)
-    column = here + n[FORCE_COLUMNS] + body * 2 * blocks
+    column = here + n[at.FORCE_COLUMNS] + body * 2 * blocks
     total = 0.0
     for k in range(blocks):
-        a, b = d[here + n[C0] + k], d[here + n[C1] + k]
+        a, b = d[here + n[at.C0] + k], d[here + n[at.C1] + k]
         f, g = abs(d[column + 2 * k]), abs(d[column + 2 * k + 1])
         growth = math.exp(max(-b, 0.0) * length)
         total += d[weight + k] * 0.125 * length * length * growth * (math.sqrt(a) * f + g)
@@ -127,15 +107,15 @@ def bend_by_force(d: Numbers, n: Places, mode: int, row: int, body: int, length:
 
 
 @njit
-def prepare_slide(d: Numbers, n: Places, mode: int, length: float, to: Numbers, at: int) -> None:
+def prepare_slide(d: Numbers, n: Places, mode: int, length: float, to: Numbers, first: int) -> None:
     """Write the table of a step of some length: per block C, S, R₀, stray; per tested row and body the bend by force.
 
     If forces vary, for each node and quantity (angles, then speeds): its row on z at the start, what each driver adds,
     what each coefficient of the force's change adds; then, by block, what these add to z in the end.
     """
-    here, blocks, bodies, drivers = record(n, mode), n[BLOCKS], n[BODIES], n[DRIVERS]
+    here, blocks, bodies, drivers = record(n, mode), n[at.BLOCKS], n[at.BODIES], n[at.DRIVERS]
     size, quantities = 2 * blocks, 2 * bodies
-    bends = at + PER_BLOCK * blocks
+    bends = first + PER_BLOCK * blocks
     for row in range(bodies + 1):
         for body in range(bodies):
             to[bends + row * bodies + body] = bend_by_force(d, n, mode, row, body, length)
@@ -144,17 +124,17 @@ def prepare_slide(d: Numbers, n: Places, mode: int, length: float, to: Numbers, 
     drives = rows + ORDER * quantities * size
     shifts = drives + ORDER * quantities * drivers
     ends = shifts + ORDER * quantities * ORDER * bodies
-    if n[VARYING]:
+    if n[at.VARYING]:
         for i in range(drives, ends):
             to[i] = 0.0
     for k in range(blocks):
-        c0, c1 = d[here + n[C0] + k], d[here + n[C1] + k]
-        forcing = here + n[FORCING] + 2 * k * drivers
-        for node in range(0 if n[VARYING] else ORDER - 1, ORDER):
+        c0, c1 = d[here + n[at.C0] + k], d[here + n[at.C1] + k]
+        forcing = here + n[at.FORCING] + 2 * k * drivers
+        for node in range(0 if n[at.VARYING] else ORDER - 1, ORDER):
             long_response(c0, c1, NODES[node] * length, to, response)
             c, s = to[response], to[response + 1]
-            for q in range(quantities if n[VARYING] else 0):
-                place = n[ANGLE] + q * size if q < bodies else n[SPEED] + (q - bodies) * size
+            for q in range(quantities if n[at.VARYING] else 0):
+                place = n[at.ANGLE] + q * size if q < bodies else n[at.SPEED] + (q - bodies) * size
                 place += here + 2 * k
                 u, v = d[place], d[place + 1]
                 if u == 0.0 and v == 0.0:
@@ -174,14 +154,14 @@ def prepare_slide(d: Numbers, n: Places, mode: int, length: float, to: Numbers, 
                     faster, slower = to[response + 2 + order], to[response + 3 + order]
                     by_first, by_second = u * (faster + c1 * slower) - v * c0 * slower, u * slower + v * faster
                     for body in range(bodies):
-                        f, g = d[forcing + W_HUB + body], d[forcing + drivers + W_HUB + body]
+                        f, g = d[forcing + at.W_HUB + body], d[forcing + drivers + at.W_HUB + body]
                         i = shifts + ((node * quantities + q) * bodies + body) * ORDER + order
                         to[i] += scale * (by_first * f + by_second * g)
-        i = at + PER_BLOCK * k
+        i = first + PER_BLOCK * k
         to[i], to[i + 1], to[i + 2] = to[response], to[response + 1], to[response + 2]
         to[i + 3] = stray(c0, c1, length)
-        for body in range(bodies if n[VARYING] else 0):
-            f, g = d[forcing + W_HUB + body], d[forcing + drivers + W_HUB + body]
+        for body in range(bodies if n[at.VARYING] else 0):
+            f, g = d[forcing + at.W_HUB + body], d[forcing + drivers + at.W_HUB + body]
             scale = 1.0
             for order in range(ORDER):
                 scale *= (order + 1) / length

@@ -4,27 +4,10 @@ from __future__ import annotations
 
 from numba import njit
 
+from flexarm_env.plant import layout as at
 from flexarm_env.plant.ahead import copy_size
 from flexarm_env.plant.events import AGAIN, GEARS, NOTHING, found_at, next_event
-from flexarm_env.plant.layout import (
-    BLOCKS,
-    BODIES,
-    C0,
-    C1,
-    GEAR_SIDE,
-    HEADER,
-    HUB_DIRECTION,
-    MODE,
-    POINTS,
-    REACH,
-    RESPONSES,
-    SPEED,
-    STATES,
-    TIME,
-    VARYING,
-    Numbers,
-    Places,
-)
+from flexarm_env.plant.layout import Numbers, Places
 from flexarm_env.plant.propagate import RESPONSE, advance, dot, respond
 from flexarm_env.plant.stick_slip import GEAR_OPEN, enter, evaluate_forces, is_stuck, record, remember, settle, to_physical
 from flexarm_env.plant.varying import add_forces, collocate, constant_forcing, reach
@@ -38,8 +21,8 @@ UNTABULATED = -1
 @njit
 def substep_scratch(n: Places) -> int:
     """How many numbers of scratch a substep needs."""
-    count = n[BODIES] + n[POINTS]
-    return 26 * n[BLOCKS] + copy_size(n[BLOCKS]) + n[STATES] + (14 + 12 * count) * count + 64
+    count = n[at.BODIES] + n[at.POINTS]
+    return 26 * n[at.BLOCKS] + copy_size(n[at.BLOCKS]) + n[at.STATES] + (14 + 12 * count) * count + 64
 
 
 @njit(forceinline=True)
@@ -48,7 +31,7 @@ def happen(
     physical: int, coefficients: int,
 ) -> None:  # fmt: skip
     """Let an event take place."""
-    mode = int(s[MODE])
+    mode = int(s[at.MODE])
     if kind == AGAIN:
         return
     if kind != GEARS:
@@ -56,29 +39,29 @@ def happen(
         return
     to_physical(d, n, s, mode, w, physical)
     if mode & GEAR_OPEN:
-        s[GEAR_SIDE] = which
+        s[at.GEAR_SIDE] = which
         enter(d, n, s, mode & ~GEAR_OPEN, w, physical)
     else:
-        s[GEAR_SIDE] = 0.0
+        s[at.GEAR_SIDE] = 0.0
         enter(d, n, s, mode | GEAR_OPEN, w, physical)
 
 
 @njit(forceinline=True)
 def face_motion(d: Numbers, n: Places, s: Numbers, mode: int) -> None:
     """Let friction oppose the motion of a state that was set or corrected from outside."""
-    size = 2 * n[BLOCKS]
-    for body in range(n[BODIES]):
+    size = 2 * n[at.BLOCKS]
+    for body in range(n[at.BODIES]):
         if not is_stuck(mode, body):
-            speed = dot(d, record(n, mode) + n[SPEED] + body * size, s, HEADER, size)
-            if speed * s[HUB_DIRECTION + body] < 0.0:
-                s[HUB_DIRECTION + body] *= -1.0
+            speed = dot(d, record(n, mode) + n[at.SPEED] + body * size, s, at.HEADER, size)
+            if speed * s[at.HUB_DIRECTION + body] < 0.0:
+                s[at.HUB_DIRECTION + body] *= -1.0
 
 
 @njit
 def substep(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int, w: Numbers) -> None:
     """Move the arm on by t [s] under a held command; `slot` names the tabulated responses for exactly t."""
-    blocks = n[BLOCKS]
-    size, count = 2 * n[BLOCKS], n[BODIES] + n[POINTS]
+    blocks = n[at.BLOCKS]
+    size, count = 2 * n[at.BLOCKS], n[at.BODIES] + n[at.POINTS]
     trial, force = 0, size
     coefficients = force + 3 * size
     nodes = coefficients + 3 * count
@@ -87,22 +70,22 @@ def substep(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: i
     found = found_at(sizes, blocks)
     own = found + size
     own_reach = own + 2 * RESPONSE * blocks
-    physical = own_reach + (12 * count * count if n[VARYING] else 0)
-    shift = (2 * n[BODIES] + n[POINTS]) * 3 * count
+    physical = own_reach + (12 * count * count if n[at.VARYING] else 0)
+    shift = (2 * n[at.BODIES] + n[at.POINTS]) * 3 * count
     left, blind = t, 0.0
-    face_motion(d, n, s, int(s[MODE]))
+    face_motion(d, n, s, int(s[at.MODE]))
     while left > 0.0:
-        mode = int(s[MODE])
+        mode = int(s[at.MODE])
         here = record(n, mode)
-        c0, c1 = here + n[C0], here + n[C1]
+        c0, c1 = here + n[at.C0], here + n[at.C1]
         known = slot >= 0 and blind == 0.0
         table = d if known else w
-        middle = here + n[RESPONSES] + slot * 2 * RESPONSE * blocks if known else own
+        middle = here + n[at.RESPONSES] + slot * 2 * RESPONSE * blocks if known else own
         end = middle + RESPONSE * blocks
         if not known:
             respond(d, c0, c1, blocks, left, w, end)
-        if n[VARYING]:
-            shifts = here + n[REACH] + slot * 2 * shift if known else own_reach
+        if n[at.VARYING]:
+            shifts = here + n[at.REACH] + slot * 2 * shift if known else own_reach
             if not known:
                 respond(d, c0, c1, blocks, 0.5 * left, w, middle)
                 reach(d, n, mode, w, middle, w, own_reach)
@@ -112,13 +95,13 @@ def substep(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: i
             constant_forcing(d, n, s, command, mode, w, force)
             evaluate_forces(d, n, s, mode, mode, w, coefficients)
             add_forces(d, n, mode, w, coefficients, force)
-        advance(d, c0, c1, blocks, table, end, s, HEADER, w, force, n[VARYING], trial)
+        advance(d, c0, c1, blocks, table, end, s, at.HEADER, w, force, n[at.VARYING], trial)
         when, kind, which = next_event(d, n, s, mode, command, w, trial, force, coefficients, sizes, min(blind, left), left)
         when = left if kind == NOTHING else when
         if when > 0.0:
             for i in range(size):
-                s[HEADER + i] = w[(trial if kind == NOTHING else found) + i]
-            s[TIME] += when
+                s[at.HEADER + i] = w[(trial if kind == NOTHING else found) + i]
+            s[at.TIME] += when
         remember(d, n, s)
         if kind == NOTHING:
             return

@@ -4,34 +4,8 @@ from __future__ import annotations
 
 from numba import njit
 
-from flexarm_env.plant.layout import (
-    ANGLE,
-    BLOCKS,
-    BODIES,
-    C0,
-    C1,
-    COUPLED,
-    DRAG_VELOCITY,
-    DRIVERS,
-    FORCE_COLUMNS,
-    FORCING,
-    GEAR_SIDE,
-    HEADER,
-    HELD_HUB,
-    HELD_MOTOR,
-    POINTS,
-    SPEED,
-    TIME,
-    TOLERANCE,
-    VARYING,
-    W_COMMAND,
-    W_HELD_HUB,
-    W_HELD_MOTOR,
-    W_ONE,
-    W_SIDE,
-    Numbers,
-    Places,
-)
+from flexarm_env.plant import layout as at
+from flexarm_env.plant.layout import Numbers, Places
 from flexarm_env.plant.propagate import RESPONSE, advance
 from flexarm_env.plant.stick_slip import apply_laws, evaluate_forces, read_motion, record
 
@@ -43,23 +17,23 @@ def constant_forcing(
     d: Numbers, n: Places, s: Numbers, command: float, mode: int, w: Numbers, force: int,
 ) -> None:  # fmt: skip
     """Write what stays over the substep: command, constant torque, gears' side, held angles; nothing changes in time."""
-    row = record(n, mode) + n[FORCING]
-    for i in range(2 * n[BLOCKS]):
-        total = d[row + W_COMMAND] * command + d[row + W_ONE]
-        if n[COUPLED]:
-            total += d[row + W_SIDE] * s[GEAR_SIDE]
-            total += d[row + W_HELD_HUB] * s[HELD_HUB] + d[row + W_HELD_MOTOR] * s[HELD_MOTOR]
+    row = record(n, mode) + n[at.FORCING]
+    for i in range(2 * n[at.BLOCKS]):
+        total = d[row + at.W_COMMAND] * command + d[row + at.W_ONE]
+        if n[at.COUPLED]:
+            total += d[row + at.W_SIDE] * s[at.GEAR_SIDE]
+            total += d[row + at.W_HELD_HUB] * s[at.HELD_HUB] + d[row + at.W_HELD_MOTOR] * s[at.HELD_MOTOR]
         w[force + i] = total
-        w[force + i + 2 * n[BLOCKS]] = w[force + i + 4 * n[BLOCKS]] = 0.0
-        row += n[DRIVERS]
+        w[force + i + 2 * n[at.BLOCKS]] = w[force + i + 4 * n[at.BLOCKS]] = 0.0
+        row += n[at.DRIVERS]
 
 
 @njit(forceinline=True)
 def add_forces(d: Numbers, n: Places, mode: int, w: Numbers, coefficients: int, force: int) -> None:
     """Add torque and drag, coefficients of 1, t, t²/2, to the force on the blocks."""
-    count, size = n[BODIES] + n[POINTS], 2 * n[BLOCKS]
-    for order in range(3 if n[VARYING] else 1):
-        column = record(n, mode) + n[FORCE_COLUMNS]
+    count, size = n[at.BODIES] + n[at.POINTS], 2 * n[at.BLOCKS]
+    for order in range(3 if n[at.VARYING] else 1):
+        column = record(n, mode) + n[at.FORCE_COLUMNS]
         for j in range(count):
             c = w[coefficients + order * count + j]
             for i in range(size):
@@ -69,12 +43,12 @@ def add_forces(d: Numbers, n: Places, mode: int, w: Numbers, coefficients: int, 
 
 @njit
 def add_reach(
-    d: Numbers, u: float, v: float, c0: float, c1: float, table: Numbers, at: int, column: int, size: int, count: int,
+    d: Numbers, u: float, v: float, c0: float, c1: float, table: Numbers, first: int, column: int, size: int, count: int,
     to: Numbers, out: int,
 ) -> None:  # fmt: skip
-    """Add how far forces 1, t, t²/2 along each column move u p + v P of one block, by the time of the table at `at`."""
+    """Add how far forces 1, t, t²/2 along each column move u p + v P of one block, by the time of the table at `first`."""
     for order in range(3):
-        faster, slower = table[at + 1 + order], table[at + 2 + order]  # S and R₀, R₀ and R₁, or R₁ and R₂
+        faster, slower = table[first + 1 + order], table[first + 2 + order]  # S and R₀, R₀ and R₁, or R₁ and R₂
         by_first = u * (faster + c1 * slower) - v * c0 * slower
         by_second = u * slower + v * faster
         for j in range(count):
@@ -83,22 +57,22 @@ def add_reach(
 
 
 @njit
-def reach(d: Numbers, n: Places, mode: int, table: Numbers, at: int, to: Numbers, out: int) -> None:
-    """Write how each force (order by order) moves each quantity of read_motion, by the time of the table at `at`."""
-    here, size = record(n, mode), 2 * n[BLOCKS]
-    bodies, count = n[BODIES], n[BODIES] + n[POINTS]
-    for i in range(2 * bodies + n[POINTS]):
-        row = here + n[DRAG_VELOCITY] + (i - 2 * bodies) * size
+def reach(d: Numbers, n: Places, mode: int, table: Numbers, first: int, to: Numbers, out: int) -> None:
+    """Write how each force (order by order) moves each quantity of read_motion, by the time of the table at `first`."""
+    here, size = record(n, mode), 2 * n[at.BLOCKS]
+    bodies, count = n[at.BODIES], n[at.BODIES] + n[at.POINTS]
+    for i in range(2 * bodies + n[at.POINTS]):
+        row = here + n[at.DRAG_VELOCITY] + (i - 2 * bodies) * size
         if i < bodies:
-            row = here + n[ANGLE] + i * size
+            row = here + n[at.ANGLE] + i * size
         elif i < 2 * bodies:
-            row = here + n[SPEED] + (i - bodies) * size
+            row = here + n[at.SPEED] + (i - bodies) * size
         for j in range(3 * count):
             to[out + j] = 0.0
-        for k in range(n[BLOCKS]):
-            c0, c1, u, v = d[here + n[C0] + k], d[here + n[C1] + k], d[row + 2 * k], d[row + 2 * k + 1]
-            column = here + n[FORCE_COLUMNS] + 2 * k
-            add_reach(d, u, v, c0, c1, table, at + RESPONSE * k, column, size, count, to, out)
+        for k in range(n[at.BLOCKS]):
+            c0, c1, u, v = d[here + n[at.C0] + k], d[here + n[at.C1] + k], d[row + 2 * k], d[row + 2 * k + 1]
+            column = here + n[at.FORCE_COLUMNS] + 2 * k
+            add_reach(d, u, v, c0, c1, table, first + RESPONSE * k, column, size, count, to, out)
         out += 3 * count
 
 
@@ -114,7 +88,7 @@ def fit_parabola(w: Numbers, start: int, middle: int, end: int, count: int, t: f
 
 @njit
 def collocate(
-    d: Numbers, n: Places, s: Numbers, mode: int, command: float, t: float, table: Numbers, at: int, shifts: Numbers,
+    d: Numbers, n: Places, s: Numbers, mode: int, command: float, t: float, table: Numbers, first: int, shifts: Numbers,
     shift: int, w: Numbers, trial: int, nodes: int, motion: int, force: int, coefficients: int,
 ) -> None:  # fmt: skip
     """Find the force over t as the parabola through its values at start, middle and end of the motion it causes.
@@ -124,12 +98,14 @@ def collocate(
     on Lobatto points: Hochbruck and Ostermann, Exponential integrators, Acta Numerica 2010, section 2.2).
     """
     here = record(n, mode)
-    blocks, count, quantities = n[BLOCKS], n[BODIES] + n[POINTS], 2 * n[BODIES] + n[POINTS]
+    blocks, count, quantities = n[at.BLOCKS], n[at.BODIES] + n[at.POINTS], 2 * n[at.BODIES] + n[at.POINTS]
     new, free = nodes + 3 * count, motion + quantities
     evaluate_forces(d, n, s, mode, mode, w, nodes)
     constant_forcing(d, n, s, command, mode, w, force)
     for half in range(2):
-        advance(d, here + n[C0], here + n[C1], blocks, table, at + half * RESPONSE * blocks, s, HEADER, w, force, 0, trial)
+        advance(
+            d, here + n[at.C0], here + n[at.C1], blocks, table, first + half * RESPONSE * blocks, s, at.HEADER, w, force, 0, trial
+        )
         read_motion(d, n, s, mode, w, trial, w, free + half * quantities)
     for j in range(count):
         w[nodes + count + j] = w[nodes + 2 * count + j] = w[nodes + j]
@@ -143,11 +119,11 @@ def collocate(
                 for j in range(3 * count):
                     total += shifts[row + j] * w[coefficients + j]
                 w[motion + i] = total
-            apply_laws(d, n, s, mode, s[TIME] + 0.5 * (half + 1) * t, w, motion, new + half * count)
+            apply_laws(d, n, s, mode, s[at.TIME] + 0.5 * (half + 1) * t, w, motion, new + half * count)
         for j in range(2 * count):
             change = max(change, abs(w[new + j] - w[nodes + count + j]))
             w[nodes + count + j] = w[new + j]
-        if change * min(change / before, 1.0) < d[TOLERANCE]:  # what further sweeps would change
+        if change * min(change / before, 1.0) < d[at.TOLERANCE]:  # what further sweeps would change
             break
         before = change
     fit_parabola(w, nodes, nodes + count, nodes + 2 * count, count, t, coefficients)
