@@ -30,11 +30,8 @@ from typing import Any
 
 import numba
 
-from flexarm_env.effects.base import PORT_ARGUMENTS
 from flexarm_env.files import write_whole
-
-#: What a port's switch returns where no law is active.
-DEFAULTS = {"factor": "1.0", "presliding": "level", "drive": "command", "ramp": "command", "sensor": "reading"}
+from flexarm_env.plant.ports import DEFAULTS, PORT_ARGUMENTS
 
 #: What the kernels' annotations stand for. Without a signature numba compiles a kernel for every literal it is given.
 TYPES = {
