@@ -27,5 +27,5 @@ class Backlash(Effect):
 
     @classmethod
     def starts(cls) -> list[dict[str, float]]:
-        """A narrow, a middling and a wide gap: the error has valleys in between."""
+        """A narrow and a wide gap: the error has valleys in between."""
         return [{"gap": gap} for gap in (0.02, 0.05)]
