@@ -5,8 +5,8 @@ from __future__ import annotations
 from numba import njit
 
 from flexarm_env.plant import layout as at
+from flexarm_env.plant.bundles import Numbers, Places
 from flexarm_env.plant.control_step import control_step, let_through
-from flexarm_env.plant.layout import Numbers, Places
 from flexarm_env.plant.propagate import inlined_dot
 from flexarm_env.plant.readings import measure
 from flexarm_env.plant.replay import is_lost

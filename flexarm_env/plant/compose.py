@@ -43,6 +43,16 @@ TYPES = {
     "Samples": "float64[:, ::1]",
     "Gains": "float64[:, :, ::1]",
 }
+#: What the generated module imports.
+IMPORTS = """import math
+from collections import namedtuple
+
+import numpy as np
+from numba import boolean, float64, int64, njit, uint64
+from numba.core.types import BaseTuple
+"""
+#: Added to a bundle's name, what the generated module calls its type.
+TYPE = "Type"
 #: Kernels own no array: Python holds all that they are given. So none needs numba's counts of references (_nrt), which are
 #: atomic, take as long as the physics of a quiet step, and which threads would wrest from each other at every arm.
 OPTIONS: dict[str, bool | str] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False}
@@ -65,6 +75,7 @@ ENTRANCES = (
 
 #: The kernel, each file after those that it calls.
 FILES = (
+    "bundles.py",
     "propagate.py",
     "ahead.py",
     "crossing.py",
@@ -152,6 +163,14 @@ class _Compiled(ast.NodeTransformer):
         node.decorator_list = [ast.Call(ast.Name("njit", ast.Load()), signatures, options)]
         return node
 
+    def visit_ClassDef(self, node: ast.ClassDef) -> list[ast.stmt]:
+        """Replace a bundle by a named tuple and the type that signatures name."""
+        fields = [field for field in node.body if isinstance(field, ast.AnnAssign)]
+        names = tuple(ast.unparse(field.target) for field in fields)
+        types = ", ".join(_type_of(field.annotation) for field in fields)
+        text = f"{node.name} = namedtuple({node.name!r}, {names!r})\n"
+        return ast.parse(text + f"{node.name}{TYPE} = BaseTuple.from_types(({types}), {node.name})").body
+
     def visit_Subscript(self, node: ast.Subscript) -> ast.Subscript:
         """Make an index unsigned if it is computed."""
         self.generic_visit(node)
@@ -163,11 +182,16 @@ class _Compiled(ast.NodeTransformer):
 
 
 def _signature(node: ast.FunctionDef) -> ast.expr:
-    names = [a.annotation.id for a in node.args.args if isinstance(a.annotation, ast.Name)]
+    types = ", ".join(_type_of(a.annotation) for a in node.args.args if a.annotation is not None)
     for argument in node.args.args:
         argument.annotation = None
     node.returns = None
-    return ast.parse(f"({', '.join(TYPES[name] for name in names)},)", mode="eval").body
+    return ast.parse(f"({types},)", mode="eval").body
+
+
+def _type_of(annotation: ast.expr) -> str:
+    name = ast.unparse(annotation)
+    return TYPES.get(name, f"{name}{TYPE}")
 
 
 def _unsigned(index: ast.expr) -> ast.expr:
@@ -178,8 +202,7 @@ def _unsigned(index: ast.expr) -> ast.expr:
 def source_of(laws: Sequence[Law]) -> str:
     """Text of the kernel with these laws in its switches, before it is given signatures and unsigned indices."""
     here = Path(__file__).parent
-    imports = ["import math", "import numpy as np", "from numba import boolean, float64, int64, njit, uint64"]
-    parts = [*imports, _plain(here / "layout.py")]
+    parts = [IMPORTS, _plain(here / "layout.py")]
     parts += [_switch(port, laws) for port in PORT_ARGUMENTS]
     parts += [_plain(here / file) for file in FILES]
     text = "\n\n".join(parts) + "\n"

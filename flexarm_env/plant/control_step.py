@@ -7,9 +7,9 @@ import math
 from numba import njit
 
 from flexarm_env.plant import layout as at
+from flexarm_env.plant.bundles import Numbers, Places
 from flexarm_env.plant.glide import glide
 from flexarm_env.plant.laws import drive_law, ramp_law
-from flexarm_env.plant.layout import Numbers, Places
 from flexarm_env.plant.slide import slide
 from flexarm_env.plant.slide_table import DEPTH, prepare_slide, slide_table, table_size
 from flexarm_env.plant.substep import UNTABULATED, substep, substep_scratch

@@ -7,8 +7,8 @@ import math
 from numba import njit
 
 from flexarm_env.plant import layout as at
+from flexarm_env.plant.bundles import Numbers, Places, Segment
 from flexarm_env.plant.crossing import stray
-from flexarm_env.plant.layout import Numbers, Places
 from flexarm_env.plant.propagate import RESPONSE, respond
 from flexarm_env.plant.slide_table import DEPTH, prepare_slide, slide_table, slides
 from flexarm_env.plant.stick_slip import effect_torque, friction_budget, is_stuck, record, rubs
@@ -55,7 +55,7 @@ def prepare(d: Numbers, n: Places) -> None:
                 size = (2 * n[at.BODIES] + n[at.POINTS]) * 3 * (n[at.BODIES] + n[at.POINTS])
                 for half in range(2):
                     place = here + n[at.REACH] + (2 * slot + half) * size
-                    reach(d, n, mode, d, table + half * RESPONSE * blocks, d, place)
+                    reach(d, n, mode, Segment(d, table + half * RESPONSE * blocks), Segment(d, place))
             if slides(n) and length > 0.0:
                 for level in range(DEPTH + 1 if n[at.VARYING] else 1):
                     prepare_slide(d, n, mode, length * 0.5**level, d, slide_table(n, mode, slot, level))

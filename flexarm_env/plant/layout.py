@@ -4,14 +4,6 @@ The kernel takes four arrays and no more, because numba pays for each array at e
 and places n (int64), the state s (float64) and scratch w (float64).
 """
 
-import numpy as np
-from numpy.typing import NDArray
-
-Numbers = NDArray[np.float64]  # (any,), contiguous, as are the others
-Samples = NDArray[np.float64]  # (samples, signals)
-Gains = NDArray[np.float64]  # (modes, 2 blocks + bodies, signals)
-Places = NDArray[np.int64]  # (any,)
-
 # --- n: counts, then places within one mode's record in d, then the lists of active laws
 BODIES, COORDINATES, COUPLED, VARYING, POINTS, BLOCKS, SIGNALS, STATES, MODES, STRIDE = range(10)
 EARLY_SUBSTEPS, LATE_SUBSTEPS, DRIVERS = 10, 11, 12

@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numba import njit
 
-from flexarm_env.plant.layout import Numbers
+from flexarm_env.plant.bundles import Blocks, Numbers, Segment
 
 #: 1/k!, for the series of short times, and how many terms it needs below either reach of |c₀| t² + |c₁| t.
 INVERSE_FACTORIALS = np.array([1.0 / math.factorial(k) for k in range(18)])
@@ -80,26 +80,23 @@ def respond(d: Numbers, c0: int, c1: int, blocks: int, t: float, table: Numbers,
 
 
 @njit(forceinline=True)
-def advance(
-    d: Numbers, c0: int, c1: int, blocks: int, table: Numbers, first: int, z: Numbers, start: int, w: Numbers,
-    force: int, varying: int, out: int,
-) -> None:  # fmt: skip
-    """Write to w at `out`, which may be its own place, where z at `start` gets to by the time of the table at `first`."""
-    for k in range(blocks):
-        j = first + RESPONSE * k
-        c, r, r0 = table[j], table[j + 1], table[j + 2]
-        a, b = d[c0 + k], d[c1 + k]
-        p, q = z[start + 2 * k], z[start + 2 * k + 1]
+def advance(d: Numbers, blocks: Blocks, table: Segment, z: Segment, w: Numbers, force: int, out: int) -> None:
+    """Write to w at `out`, which may be its own place, where z gets to by the time of the table."""
+    for k in range(blocks.number):
+        j = table.first + RESPONSE * k
+        c, r, r0 = table.data[j], table.data[j + 1], table.data[j + 2]
+        a, b = d[blocks.c0 + k], d[blocks.c1 + k]
+        p, q = z.data[z.first + 2 * k], z.data[z.first + 2 * k + 1]
         i = force + 2 * k
         f, g = w[i], w[i + 1]
         new_p = c * p + r * q + f * (r + b * r0) + g * r0
         new_q = (c - b * r) * q - a * (r * p + r0 * f) + r * g
-        if varying:
-            r1, r2 = table[j + 3], table[j + 4]
-            f, g = w[i + 2 * blocks], w[i + 2 * blocks + 1]
+        if blocks.varying:
+            r1, r2 = table.data[j + 3], table.data[j + 4]
+            f, g = w[i + 2 * blocks.number], w[i + 2 * blocks.number + 1]
             new_p += f * (r0 + b * r1) + g * r1
             new_q += g * r0 - a * r1 * f
-            f, g = w[i + 4 * blocks], w[i + 4 * blocks + 1]
+            f, g = w[i + 4 * blocks.number], w[i + 4 * blocks.number + 1]
             new_p += f * (r1 + b * r2) + g * r2
             new_q += g * r1 - a * r2 * f
         w[out + 2 * k] = new_p

@@ -5,8 +5,8 @@ from __future__ import annotations
 from numba import njit
 
 from flexarm_env.plant import layout as at
+from flexarm_env.plant.bundles import Numbers, Places
 from flexarm_env.plant.laws import sensor_law
-from flexarm_env.plant.layout import Numbers, Places
 from flexarm_env.plant.propagate import inlined_dot
 from flexarm_env.plant.stick_slip import angle_of, record
 

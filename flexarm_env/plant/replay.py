@@ -7,8 +7,8 @@ import math
 from numba import njit
 
 from flexarm_env.plant import layout as at
+from flexarm_env.plant.bundles import Gains, Numbers, Places, Samples
 from flexarm_env.plant.control_step import control_step, let_through, uneven_step
-from flexarm_env.plant.layout import Gains, Numbers, Places, Samples
 from flexarm_env.plant.readings import measure
 from flexarm_env.plant.stick_slip import GEAR_OPEN, angle_of, enter, is_stuck, preslides, settle
 

@@ -7,7 +7,7 @@ import math
 from numba import njit
 
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.layout import Numbers, Places
+from flexarm_env.plant.bundles import Numbers, Places
 from flexarm_env.plant.propagate import dot
 from flexarm_env.plant.slide_force import fit_force, variation
 from flexarm_env.plant.slide_table import ORDER, PER_BLOCK, tested_row

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.layout import Numbers, Places
+from flexarm_env.plant.bundles import Numbers, Places
 from flexarm_env.plant.propagate import dot, inlined_dot
 from flexarm_env.plant.slide_table import NODES, ORDER
 from flexarm_env.plant.stick_slip import apply_laws, record

@@ -12,8 +12,8 @@ import numpy as np
 from numba import njit
 
 from flexarm_env.plant import layout as at
+from flexarm_env.plant.bundles import Numbers, Places
 from flexarm_env.plant.crossing import stray
-from flexarm_env.plant.layout import Numbers, Places
 from flexarm_env.plant.propagate import INVERSE_FACTORIALS, LONG_REACH
 from flexarm_env.plant.stick_slip import is_stuck, record
 

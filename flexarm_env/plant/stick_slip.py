@@ -5,8 +5,8 @@ from __future__ import annotations
 from numba import njit
 
 from flexarm_env.plant import layout as at
+from flexarm_env.plant.bundles import Numbers, Places
 from flexarm_env.plant.laws import drag_law, factor_law, friction_law, presliding_law, torque_law, weight_law
-from flexarm_env.plant.layout import Numbers, Places
 from flexarm_env.plant.propagate import dot
 
 #: Bit of a mode whose gears are open; no other stands above it.
@@ -145,11 +145,10 @@ def rubs(d: Numbers, n: Places, body: int) -> bool:
 
 @njit
 def applied_offset(
-    d: Numbers, n: Places, s: Numbers, mode: int, body: int, command: float, w: Numbers,
-    coefficients: int, order: int,
-) -> float:  # fmt: skip
+    d: Numbers, n: Places, s: Numbers, body: int, command: float, w: Numbers, coefficients: int, order: int
+) -> float:
     """Part of the torque on a body that stands that is not in its row on z: its coefficient of 1, t, t²/2."""
-    here = record(n, mode)
+    here = record(n, int(s[at.MODE]))
     total = 0.0
     if order == 0:
         row = here + n[at.HOLD_DRIVERS] + body * n[at.DRIVERS]
@@ -229,7 +228,7 @@ def settle(
     mode, bit = int(s[at.MODE]), 1 << body
     evaluate_forces(d, n, s, mode, mode | bit, w, coefficients)
     push = dot(d, record(n, mode) + n[at.HOLD] + body * 2 * n[at.BLOCKS], s, at.HEADER, 2 * n[at.BLOCKS])
-    push += applied_offset(d, n, s, mode, body, command, w, coefficients, 0)
+    push += applied_offset(d, n, s, body, command, w, coefficients, 0)
     if preslides(n, body):
         s[at.HUB_DIRECTION] = 1.0 if push >= s[at.KNOWN_FRICTION] else -1.0
         return

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from numba import njit
 
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.layout import Numbers, Places
+from flexarm_env.plant.bundles import Arrays, Blocks, Numbers, Places, Segment, SubstepScratch
 from flexarm_env.plant.propagate import RESPONSE, advance
 from flexarm_env.plant.stick_slip import apply_laws, evaluate_forces, read_motion, record
 
@@ -41,26 +43,45 @@ def add_forces(d: Numbers, n: Places, mode: int, w: Numbers, coefficients: int, 
             column += size
 
 
+class Answer(NamedTuple):
+    """What a force on a block is looked at by: a quantity u p + v P of the block, with the block's c₀ and c₁."""
+
+    u: float
+    v: float
+    c0: float
+    c1: float
+
+
+class Columns(NamedTuple):
+    """Columns in d: the place of the first, how far each is from the next, how many there are."""
+
+    first: int
+    step: int
+    number: int
+
+
 @njit
-def add_reach(
-    d: Numbers, u: float, v: float, c0: float, c1: float, table: Numbers, first: int, column: int, size: int, count: int,
-    to: Numbers, out: int,
-) -> None:  # fmt: skip
-    """Add how far forces 1, t, t²/2 along each column move u p + v P of one block, by the time of the table at `first`."""
+def add_reach(d: Numbers, answer: Answer, table: Segment, columns: Columns, to: Segment) -> None:
+    """Add how far forces 1, t, t²/2 along each column move a quantity of one block, by the time of the table."""
+    u, v, c0, c1 = answer.u, answer.v, answer.c0, answer.c1
+    out = to.first
     for order in range(3):
-        faster, slower = table[first + 1 + order], table[first + 2 + order]  # S and R₀, R₀ and R₁, or R₁ and R₂
+        i = table.first + order
+        faster, slower = table.data[i + 1], table.data[i + 2]  # S and R₀, R₀ and R₁, or R₁ and R₂
         by_first = u * (faster + c1 * slower) - v * c0 * slower
         by_second = u * slower + v * faster
-        for j in range(count):
-            to[out + j] += by_first * d[column + j * size] + by_second * d[column + j * size + 1]
-        out += count
+        for j in range(columns.number):
+            column = columns.first + j * columns.step
+            to.data[out + j] += by_first * d[column] + by_second * d[column + 1]
+        out += columns.number
 
 
 @njit
-def reach(d: Numbers, n: Places, mode: int, table: Numbers, first: int, to: Numbers, out: int) -> None:
-    """Write how each force (order by order) moves each quantity of read_motion, by the time of the table at `first`."""
+def reach(d: Numbers, n: Places, mode: int, table: Segment, to: Segment) -> None:
+    """Write how each force (order by order) moves each quantity of read_motion, by the time of the table."""
     here, size = record(n, mode), 2 * n[at.BLOCKS]
     bodies, count = n[at.BODIES], n[at.BODIES] + n[at.POINTS]
+    out = to.first
     for i in range(2 * bodies + n[at.POINTS]):
         row = here + n[at.DRAG_VELOCITY] + (i - 2 * bodies) * size
         if i < bodies:
@@ -68,11 +89,11 @@ def reach(d: Numbers, n: Places, mode: int, table: Numbers, first: int, to: Numb
         elif i < 2 * bodies:
             row = here + n[at.SPEED] + (i - bodies) * size
         for j in range(3 * count):
-            to[out + j] = 0.0
+            to.data[out + j] = 0.0
         for k in range(n[at.BLOCKS]):
-            c0, c1, u, v = d[here + n[at.C0] + k], d[here + n[at.C1] + k], d[row + 2 * k], d[row + 2 * k + 1]
-            column = here + n[at.FORCE_COLUMNS] + 2 * k
-            add_reach(d, u, v, c0, c1, table, first + RESPONSE * k, column, size, count, to, out)
+            answer = Answer(d[row + 2 * k], d[row + 2 * k + 1], d[here + n[at.C0] + k], d[here + n[at.C1] + k])
+            columns = Columns(here + n[at.FORCE_COLUMNS] + 2 * k, size, count)
+            add_reach(d, answer, Segment(table.data, table.first + RESPONSE * k), columns, Segment(to.data, out))
         out += 3 * count
 
 
@@ -87,26 +108,25 @@ def fit_parabola(w: Numbers, start: int, middle: int, end: int, count: int, t: f
 
 
 @njit
-def collocate(
-    d: Numbers, n: Places, s: Numbers, mode: int, command: float, t: float, table: Numbers, first: int, shifts: Numbers,
-    shift: int, w: Numbers, trial: int, nodes: int, motion: int, force: int, coefficients: int,
-) -> None:  # fmt: skip
+def collocate(a: Arrays, command: float, t: float, table: Segment, shifts: Segment, places: SubstepScratch) -> None:
     """Find the force over t as the parabola through its values at start, middle and end of the motion it causes.
 
     Order four in t, solved by sweeps over the few quantities that the laws ask for: without the laws' forces they
     move as `table` says, and by each force as `shifts` says, both for the middle, then the end (exponential collocation
     on Lobatto points: Hochbruck and Ostermann, Exponential integrators, Acta Numerica 2010, section 2.2).
     """
+    d, n, s, w = a.d, a.n, a.s, a.w
+    mode = int(s[at.MODE])
     here = record(n, mode)
     blocks, count, quantities = n[at.BLOCKS], n[at.BODIES] + n[at.POINTS], 2 * n[at.BODIES] + n[at.POINTS]
+    nodes, motion, coefficients = places.nodes, places.motion, places.coefficients
     new, free = nodes + 3 * count, motion + quantities
     evaluate_forces(d, n, s, mode, mode, w, nodes)
-    constant_forcing(d, n, s, command, mode, w, force)
+    constant_forcing(d, n, s, command, mode, w, places.force)
+    steady, state = Blocks(here + n[at.C0], here + n[at.C1], blocks, 0), Segment(s, at.HEADER)
     for half in range(2):
-        advance(
-            d, here + n[at.C0], here + n[at.C1], blocks, table, first + half * RESPONSE * blocks, s, at.HEADER, w, force, 0, trial
-        )
-        read_motion(d, n, s, mode, w, trial, w, free + half * quantities)
+        advance(d, steady, Segment(table.data, table.first + half * RESPONSE * blocks), state, w, places.force, places.trial)
+        read_motion(d, n, s, mode, w, places.trial, w, free + half * quantities)
     for j in range(count):
         w[nodes + count + j] = w[nodes + 2 * count + j] = w[nodes + j]
     before = 1.0
@@ -115,9 +135,9 @@ def collocate(
         change = 0.0
         for half in range(2):
             for i in range(quantities):
-                total, row = w[free + half * quantities + i], shift + (half * quantities + i) * 3 * count
+                total, row = w[free + half * quantities + i], shifts.first + (half * quantities + i) * 3 * count
                 for j in range(3 * count):
-                    total += shifts[row + j] * w[coefficients + j]
+                    total += shifts.data[row + j] * w[coefficients + j]
                 w[motion + i] = total
             apply_laws(d, n, s, mode, s[at.TIME] + 0.5 * (half + 1) * t, w, motion, new + half * count)
         for j in range(2 * count):
@@ -127,4 +147,4 @@ def collocate(
             break
         before = change
     fit_parabola(w, nodes, nodes + count, nodes + 2 * count, count, t, coefficients)
-    add_forces(d, n, mode, w, coefficients, force)
+    add_forces(d, n, mode, w, coefficients, places.force)
