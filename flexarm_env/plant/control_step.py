@@ -7,11 +7,11 @@ import math
 from numba import njit
 
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.bundles import Numbers, Places
+from flexarm_env.plant.bundles import Arrays, Numbers, Places
 from flexarm_env.plant.glide import glide
 from flexarm_env.plant.laws import drive_law, ramp_law
 from flexarm_env.plant.slide import slide
-from flexarm_env.plant.slide_table import DEPTH, prepare_slide, slide_table, table_size
+from flexarm_env.plant.slide_table import DEPTH, prepare_slide, slide_table, step_table, table_size
 from flexarm_env.plant.substep import UNTABULATED, substep, substep_scratch
 
 
@@ -47,65 +47,68 @@ def rests(n: Places, mode: int) -> bool:
 
 
 @njit
-def walk(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int, w: Numbers) -> None:
+def walk(a: Arrays, command: float, t: float, slot: int) -> None:
     """Move the arm on by t [s] in slides, halved where the force varies fast or an event may fall in, else substeps."""
+    d, n, s, w = a.d, a.n, a.s, a.w
     whole, done, level = 1 << DEPTH, 0, 0
-    own, own_mode, own_level = substep_scratch(n), UNTABULATED, 0
+    own, own_mode, own_level = step_table(n, w, substep_scratch(n)), UNTABULATED, 0
     while done < whole:
         mode, part = int(s[at.MODE]), whole >> level
         length = t * 0.5**level
         if slot >= 0 and level == 0 and rests(n, mode):
-            moved = glide(d, n, s, command, length, slot, w)
+            moved = glide(a, command, length, slot)
         elif slot >= 0:
-            moved = slide(d, n, s, command, length, level == DEPTH, d, slide_table(n, mode, slot, level), w)
+            moved = slide(a, command, length, level == DEPTH, slide_table(d, n, mode, slot, level))
         else:
             if own_mode != mode or own_level != level:
-                prepare_slide(d, n, mode, length, w, own)
+                prepare_slide(d, n, mode, length, own)
                 own_mode, own_level = mode, level
-            moved = slide(d, n, s, command, length, level == DEPTH, w, own, w)
+            moved = slide(a, command, length, level == DEPTH, own)
         if not moved and level < DEPTH:
             level += 1
             continue
         if not moved:
-            substep(d, n, s, command, length, UNTABULATED, w)
+            substep(a, command, length, UNTABULATED)
         done += part
         if level > 0 and done % (2 * part) == 0:
             level -= 1
 
 
 @njit(forceinline=True)
-def move(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int, w: Numbers) -> None:
+def move(a: Arrays, command: float, t: float, slot: int) -> None:
     """Move the arm on by t [s] under a held command; `slot` names the tables for exactly t."""
+    n = a.n
     if n[at.VARYING] and not n[at.POINTS]:
-        walk(d, n, s, command, t, slot, w)
+        walk(a, command, t, slot)
         return
-    if n[at.GLIDES] == 2 and slot >= 0 and slide(d, n, s, command, t, True, d, slide_table(n, int(s[at.MODE]), slot, 0), w):
+    tabulated = n[at.GLIDES] == 2 and slot >= 0
+    if tabulated and slide(a, command, t, True, slide_table(a.d, n, int(a.s[at.MODE]), slot, 0)):
         return
-    substep(d, n, s, command, t, slot, w)
+    substep(a, command, t, slot)
 
 
 @njit
 def control_step(d: Numbers, n: Places, s: Numbers, before: float, command: float, w: Numbers) -> None:
     """Move the arm on by one sample: the last command acts until the delay is over, then the new one."""
+    a = Arrays(d, n, s, w)
     for _ in range(n[at.EARLY_SUBSTEPS]):
-        if n[at.GLIDES] != 1 or not glide(d, n, s, before, d[at.EARLY_LENGTH], 0, w):
-            move(d, n, s, before, d[at.EARLY_LENGTH], 0, w)
+        if n[at.GLIDES] != 1 or not glide(a, before, d[at.EARLY_LENGTH], 0):
+            move(a, before, d[at.EARLY_LENGTH], 0)
     for j in range(n[at.LATE_SUBSTEPS]):
         now = on_the_way(d, n, before, command, j * d[at.LATE_LENGTH], (j + 1) * d[at.LATE_LENGTH])
-        if n[at.GLIDES] != 1 or not glide(d, n, s, now, d[at.LATE_LENGTH], 1, w):
-            move(d, n, s, now, d[at.LATE_LENGTH], 1, w)
+        if n[at.GLIDES] != 1 or not glide(a, now, d[at.LATE_LENGTH], 1):
+            move(a, now, d[at.LATE_LENGTH], 1)
 
 
 @njit(inline="always")
-def uneven_step(
-    d: Numbers, n: Places, s: Numbers, before: float, command: float, interval: float, w: Numbers,
-) -> None:  # fmt: skip
+def uneven_step(a: Arrays, before: float, command: float, interval: float) -> None:
     """Like control_step, over an interval that is not the tabulated one."""
+    d, n = a.d, a.n
     early = min(d[at.EARLY_LENGTH] * n[at.EARLY_SUBSTEPS], interval)
     late = interval - early
     if early > 0.0:
-        move(d, n, s, before, early, UNTABULATED, w)
+        move(a, before, early, UNTABULATED)
     count = max(math.ceil(late / d[at.LATE_LENGTH] - 1e-9), 1) if late > 0.0 else 0
     for j in range(count):
         now = on_the_way(d, n, before, command, j * late / count, (j + 1) * late / count)
-        move(d, n, s, now, late / count, UNTABULATED, w)
+        move(a, now, late / count, UNTABULATED)

@@ -7,11 +7,11 @@ import math
 from numba import njit
 
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.bundles import Numbers, Places, Segment
+from flexarm_env.plant.bundles import Arrays, Numbers, Places, Segment
 from flexarm_env.plant.crossing import stray
 from flexarm_env.plant.propagate import RESPONSE, respond
 from flexarm_env.plant.slide_table import DEPTH, prepare_slide, slide_table, slides
-from flexarm_env.plant.stick_slip import effect_torque, friction_budget, is_stuck, record, rubs
+from flexarm_env.plant.stick_slip import Contact, effect_torque, friction_budget, is_stuck, record, rubs
 from flexarm_env.plant.varying import reach
 
 
@@ -58,38 +58,38 @@ def prepare(d: Numbers, n: Places) -> None:
                     reach(d, n, mode, Segment(d, table + half * RESPONSE * blocks), Segment(d, place))
             if slides(n) and length > 0.0:
                 for level in range(DEPTH + 1 if n[at.VARYING] else 1):
-                    prepare_slide(d, n, mode, length * 0.5**level, d, slide_table(n, mode, slot, level))
+                    prepare_slide(d, n, mode, length * 0.5**level, slide_table(d, n, mode, slot, level))
             prepare_glide(d, n, mode, length, table + RESPONSE * blocks, here + n[at.GLIDE] + slot * blocks * at.GLIDE_SIZE)
 
 
 @njit(forceinline=True)
-def limits(
-    d: Numbers, n: Places, s: Numbers, here: int, stuck: bool, command: float, torque: float
-) -> tuple[float, float, float, float]:
+def limits(a: Arrays, here: int, stuck: bool, command: float, torque: float) -> tuple[float, float, float, float]:
     """Return (torque on the hub, offset, low, high): no event while the row on z plus offset stays between the two."""
-    direction, held = s[at.HUB_DIRECTION], s[at.HELD_HUB]
+    d, n, s = a.d, a.n, a.s
+    direction, held, time = s[at.HUB_DIRECTION], s[at.HELD_HUB], s[at.TIME]
     if stuck:
         row = here + n[at.HOLD_DRIVERS]
         offset = d[row + at.W_COMMAND] * command + d[row + at.W_HUB] * torque + d[row + at.W_ONE] + d[row + at.W_HELD_HUB] * held
-        low = -friction_budget(d, n, 0, -1.0, 0.0, held, s[at.TIME], 0.0, True)
-        return torque, offset, low, friction_budget(d, n, 0, 1.0, 0.0, held, s[at.TIME], 0.0, True)
+        low = -friction_budget(d, n, 0, Contact(-1.0, 0.0, held, time, 0.0, True))
+        return torque, offset, low, friction_budget(d, n, 0, Contact(1.0, 0.0, held, time, 0.0, True))
     if not rubs(d, n, 0):
         return torque, 0.0, -math.inf, math.inf
-    torque -= direction * friction_budget(d, n, 0, direction, 0.0, held, s[at.TIME], 0.0, False)
+    torque -= direction * friction_budget(d, n, 0, Contact(direction, 0.0, held, time, 0.0, False))
     return torque, 0.0, 0.0 if direction > 0.0 else -math.inf, math.inf if direction > 0.0 else 0.0
 
 
 @njit(forceinline=True)
-def glide(d: Numbers, n: Places, s: Numbers, command: float, length: float, slot: int, w: Numbers) -> bool:
+def glide(a: Arrays, command: float, length: float, slot: int) -> bool:
     """Move the arm on by a whole tabulated substep and return True, if it is sure that no event falls in it.
 
     x = ż = (q + f₁, f₂ − c₀ p − c₁ q) moves as z would without a force, and its size bounds how far the row that
     tells of events strays from its chord.
     """
+    d, n, s, w = a.d, a.n, a.s, a.w
     mode = int(s[at.MODE]) & 1
     here = record(n, mode)
     torque = effect_torque(d, n, 0, 0.0, 0.0, s[at.TIME])
-    torque, offset, low, high = limits(d, n, s, here, mode == 1, command, torque)
+    torque, offset, low, high = limits(a, here, mode == 1, command, torque)
     held = s[at.HELD_HUB]
     before, after, bend = offset, offset, 0.0
     place = here + n[at.GLIDE] + slot * n[at.BLOCKS] * at.GLIDE_SIZE
@@ -101,13 +101,13 @@ def glide(d: Numbers, n: Places, s: Numbers, command: float, length: float, slot
             f2 + (d[place + at.G_ONE + 1] + d[place + at.G_HELD + 1] * held),
         )
         p, q = s[at.HEADER + 2 * k], s[at.HEADER + 2 * k + 1]
-        a, u, v = d[place + at.G_C0], d[place + at.G_ROW], d[place + at.G_ROW + 1]
-        x, y = q + f1, f2 - a * p - d[place + at.G_C1] * q
+        c0, u, v = d[place + at.G_C0], d[place + at.G_ROW], d[place + at.G_ROW + 1]
+        x, y = q + f1, f2 - c0 * p - d[place + at.G_C1] * q
         new_p = p + d[place + at.G_S_R0] * x + d[place + at.G_R0] * y
         new_q = d[place + at.G_C] * x + d[place + at.G_S] * y - f1
         before += u * p + v * q
         after += u * new_p + v * new_q
-        bend += d[place + at.G_BEND] * math.sqrt(a * x * x + y * y)
+        bend += d[place + at.G_BEND] * math.sqrt(c0 * x * x + y * y)
         w[2 * k], w[2 * k + 1] = new_p, new_q
         place += at.GLIDE_SIZE
     if min(before, after) - bend <= low or max(before, after) + bend >= high:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from numba import njit
 
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.bundles import Numbers, Places
+from flexarm_env.plant.bundles import Numbers, Places, Segment
 from flexarm_env.plant.laws import sensor_law
 from flexarm_env.plant.propagate import inlined_dot
 from flexarm_env.plant.stick_slip import angle_of, record
@@ -15,8 +15,8 @@ from flexarm_env.plant.stick_slip import angle_of, record
 def show(d: Numbers, n: Places, s: Numbers, out: Numbers, first: int) -> None:
     """Turn readings into what the sensors' laws make of them."""
     mode, place = int(s[at.MODE]), n[at.SENSOR_LAWS]
-    angle = angle_of(d, n, s, mode, 0, s, at.HEADER)
-    motor_angle = d[at.GEAR_RATIO] * angle_of(d, n, s, mode, n[at.BODIES] - 1, s, at.HEADER)
+    angle = angle_of(d, n, s, mode, 0, Segment(s, at.HEADER))
+    motor_angle = d[at.GEAR_RATIO] * angle_of(d, n, s, mode, n[at.BODIES] - 1, Segment(s, at.HEADER))
     for j in range(n[place]):
         law = place + 1 + 3 * j
         i = first + n[law + 2]

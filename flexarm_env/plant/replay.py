@@ -7,7 +7,7 @@ import math
 from numba import njit
 
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.bundles import Gains, Numbers, Places, Samples
+from flexarm_env.plant.bundles import Arrays, Gains, Numbers, Places, Samples, Segment
 from flexarm_env.plant.control_step import control_step, let_through, uneven_step
 from flexarm_env.plant.readings import measure
 from flexarm_env.plant.stick_slip import GEAR_OPEN, angle_of, enter, is_stuck, preslides, settle
@@ -40,7 +40,7 @@ def place_at(d: Numbers, n: Places, s: Numbers, physical: Numbers, command: floa
     enter(d, n, s, mode, w, 0)
     for body in range(n[at.BODIES]):
         if is_stuck(int(s[at.MODE]), body):
-            settle(d, n, s, body, command, w, 0, n[at.STATES])
+            settle(Arrays(d, n, s, w), body, command, 0, n[at.STATES])
 
 
 @njit
@@ -58,7 +58,7 @@ def feed_back(
             if is_stuck(mode, body):
                 s[at.HELD_HUB + body] += gains[mode, size + body, j] * error
     if preslides(n, 0):  # a correction is no motion, against which friction would build up
-        s[at.KNOWN_ANGLE] = angle_of(d, n, s, mode, 0, s, at.HEADER)
+        s[at.KNOWN_ANGLE] = angle_of(d, n, s, mode, 0, Segment(s, at.HEADER))
 
 
 @njit(forceinline=True)
@@ -94,6 +94,6 @@ def replay(
         before = s[at.COMMAND]
         command = let_through(d, n, s, commands[k])
         if intervals.shape[0]:
-            uneven_step(d, n, s, before, command, intervals[k], w)
+            uneven_step(Arrays(d, n, s, w), before, command, intervals[k])
         else:
             control_step(d, n, s, before, command, w)

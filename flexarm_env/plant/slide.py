@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from numba import njit
 
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.bundles import Numbers, Places
+from flexarm_env.plant.bundles import Arrays, Numbers
 from flexarm_env.plant.propagate import dot
-from flexarm_env.plant.slide_force import fit_force, variation
-from flexarm_env.plant.slide_table import ORDER, PER_BLOCK, tested_row
+from flexarm_env.plant.slide_force import StepScratch, fit_force, step_places, variation
+from flexarm_env.plant.slide_table import ORDER, PER_BLOCK, StepTable, tested_row
 from flexarm_env.plant.stick_slip import (
     GEAR_OPEN,
     apply_laws,
@@ -27,49 +28,20 @@ from flexarm_env.plant.stick_slip import (
 QUIET = 1e-4
 
 
-@njit
-def keeps(
-    d: Numbers, n: Places, s: Numbers, mode: int, body: int, before: float, after: float, bend: float, moves: bool,
-    tab: Numbers, bends: int, w: Numbers, inputs: int, changes: int,
-) -> bool:  # fmt: skip
-    """Whether a body surely goes on turning or being held over the step."""
-    if not rubs(d, n, body):
-        return True
-    if preslides(n, body) and max(abs(before), abs(after)) + bend < QUIET:
-        return True
-    bodies = n[at.BODIES]
-    here, stuck = record(n, mode), is_stuck(mode, body)
-    for other in range(bodies if moves else 0):
-        turned = variation(w, changes + other * ORDER)
-        bend += tab[bends + body * bodies + other] * turned
-        if stuck:
-            bend += abs(d[here + n[at.HOLD_FORCES] + body * bodies + other]) * turned
-    if not stuck:
-        return min(before * s[at.HUB_DIRECTION + body], after * s[at.HUB_DIRECTION + body]) > bend
-    offset = dot(d, here + n[at.HOLD_DRIVERS] + body * n[at.DRIVERS], w, inputs, n[at.DRIVERS])
-    angle, load = s[at.HELD_HUB + body], load_now(d, n, s, mode)
-    high, low = static_budget(d, n, s, body, 1.0, angle, load), static_budget(d, n, s, body, -1.0, angle, load)
-    return max(before, after) + offset + bend < high and min(before, after) + offset - bend > -low
+class Chord(NamedTuple):
+    """A tested row before and after a step, and how far it may stray from the line between the two."""
+
+    before: float
+    after: float
+    bend: float
 
 
-@njit
-def slide(
-    d: Numbers, n: Places, s: Numbers, command: float, length: float, last: bool, tab: Numbers, first: int, w: Numbers,
-) -> bool:  # fmt: skip
-    """Move the arm on by a step with a table and return True, if it is sure that no event falls in it.
-
-    `last` says that the step cannot be halved.
-    """
-    mode = int(s[at.MODE])
-    here, blocks, bodies, drivers = record(n, mode), n[at.BLOCKS], n[at.BODIES], n[at.DRIVERS]
-    size, quantities = 2 * blocks, 2 * bodies
-    inputs = size  # in w, after the new state
-    start = inputs + drivers
-    forces = start + quantities
-    changes = forces + bodies
-    varying = n[at.VARYING] > 0
-    if mode >= GEAR_OPEN:
-        return False
+@njit(forceinline=True)
+def start_forces(a: Arrays, places: StepScratch) -> bool:
+    """Write the motion at the start, if any law asks, and the forces; return False if a body turns against its direction."""
+    d, n, s, w = a.d, a.n, a.s, a.w
+    mode, bodies, size = int(s[at.MODE]), n[at.BODIES], 2 * n[at.BLOCKS]
+    here, start, varying = record(n, mode), places.start, n[at.VARYING] > 0
     for body in range(bodies if varying else 0):
         w[start + body] = dot(d, here + n[at.ANGLE] + body * size, s, at.HEADER, size)
         w[start + body] += d[here + n[at.HOLDS_ANGLE] + body] * s[at.HELD_HUB + body]
@@ -78,73 +50,129 @@ def slide(
         if turns and w[start + bodies + body] * s[at.HUB_DIRECTION + body] <= (-QUIET if preslides(n, body) else 0.0):
             return False
     if not varying:
-        for i in range(quantities):
+        for i in range(2 * bodies):
             w[start + i] = 0.0
-    apply_laws(d, n, s, mode, s[at.TIME], w, start, forces)
-    hub_force, motor_force = w[forces], w[forces + 1] if bodies == 2 else 0.0
-    side, held_hub, held_motor, coupled = s[at.GEAR_SIDE], s[at.HELD_HUB], s[at.HELD_MOTOR], n[at.COUPLED] > 0
-    w[inputs + at.W_COMMAND], w[inputs + at.W_ONE], w[inputs + at.W_SIDE] = command, 1.0, side
-    w[inputs + at.W_HUB], w[inputs + at.W_MOTOR] = hub_force, motor_force
-    w[inputs + at.W_HELD_HUB], w[inputs + at.W_HELD_MOTOR] = held_hub, held_motor
-    moves = varying and (mode != (1 << bodies) - 1 or n[n[at.TORQUE_LAWS]] > 0)
-    bends = first + PER_BLOCK * blocks
-    rows = bends + (bodies + 1) * bodies + 7
-    if moves and not (fit_force(d, n, s, mode, length, last, tab, rows, w, inputs, start, changes) or last):
-        return False
-    ends = rows + ORDER * quantities * (size + drivers + ORDER * bodies)
-    hub, hub_weight = tested_row(n, mode, 0)
-    motor, motor_weight = tested_row(n, mode, bodies - 1)
-    mesh, mesh_weight = tested_row(n, mode, bodies)
-    hub_before, hub_after, hub_bend = 0.0, 0.0, 0.0
-    motor_before, motor_after, motor_bend = 0.0, 0.0, 0.0
-    mesh_before, mesh_after, mesh_bend = 0.0, 0.0, 0.0
-    for k in range(blocks):
-        i = here + n[at.FORCING] + 2 * k * drivers
-        f1 = d[i + at.W_COMMAND] * command + d[i + at.W_HUB] * hub_force + d[i + at.W_ONE]
-        if coupled:
-            f1 += d[i + at.W_MOTOR] * motor_force + d[i + at.W_SIDE] * side
-            f1 += d[i + at.W_HELD_HUB] * held_hub + d[i + at.W_HELD_MOTOR] * held_motor
-        i += drivers
-        f2 = d[i + at.W_COMMAND] * command + d[i + at.W_HUB] * hub_force + d[i + at.W_ONE]
-        if coupled:
-            f2 += d[i + at.W_MOTOR] * motor_force + d[i + at.W_SIDE] * side
-            f2 += d[i + at.W_HELD_HUB] * held_hub + d[i + at.W_HELD_MOTOR] * held_motor
-        a, b = d[here + n[at.C0] + k], d[here + n[at.C1] + k]
-        i = first + PER_BLOCK * k
+    apply_laws(a, mode, s[at.TIME], start, places.forces)
+    return True
+
+
+@njit(forceinline=True)
+def write_inputs(a: Arrays, command: float, places: StepScratch) -> None:
+    """Write the drivers: the command, the forces at the start, the constant 1, the gears' side and the held angles."""
+    s, w, inputs = a.s, a.w, places.inputs
+    w[inputs + at.W_COMMAND], w[inputs + at.W_ONE], w[inputs + at.W_SIDE] = command, 1.0, s[at.GEAR_SIDE]
+    w[inputs + at.W_HUB] = w[places.forces]
+    w[inputs + at.W_MOTOR] = w[places.forces + 1] if a.n[at.BODIES] == 2 else 0.0
+    w[inputs + at.W_HELD_HUB], w[inputs + at.W_HELD_MOTOR] = s[at.HELD_HUB], s[at.HELD_MOTOR]
+
+
+@njit(forceinline=True)
+def forcing_of(d: Numbers, row: int, w: Numbers, inputs: int, coupled: bool) -> float:
+    """Return the force on one coordinate of a block, from the drivers."""
+    force = d[row + at.W_COMMAND] * w[inputs + at.W_COMMAND] + d[row + at.W_HUB] * w[inputs + at.W_HUB] + d[row + at.W_ONE]
+    if coupled:
+        force += d[row + at.W_MOTOR] * w[inputs + at.W_MOTOR] + d[row + at.W_SIDE] * w[inputs + at.W_SIDE]
+        force += d[row + at.W_HELD_HUB] * w[inputs + at.W_HELD_HUB] + d[row + at.W_HELD_MOTOR] * w[inputs + at.W_HELD_MOTOR]
+    return force
+
+
+@njit(forceinline=True)
+def move_blocks(a: Arrays, moves: bool, table: StepTable, places: StepScratch) -> None:
+    """Write where each block gets to by the end of the step, and how far it strays from its chord, to w."""
+    d, n, s, w, tab = a.d, a.n, a.s, a.w, table.data
+    here, drivers, changes = record(n, int(s[at.MODE])), n[at.DRIVERS], n[at.BODIES] * ORDER
+    coupled = n[at.COUPLED] > 0
+    for k in range(n[at.BLOCKS]):
+        row = here + n[at.FORCING] + 2 * k * drivers
+        f1 = forcing_of(d, row, w, places.inputs, coupled)
+        f2 = forcing_of(d, row + drivers, w, places.inputs, coupled)
+        c0, c1 = d[here + n[at.C0] + k], d[here + n[at.C1] + k]
+        i = table.responses + PER_BLOCK * k
         c, r, r0 = tab[i], tab[i + 1], tab[i + 2]
         p, q = s[at.HEADER + 2 * k], s[at.HEADER + 2 * k + 1]
-        x, y = q + f1, f2 - a * p - b * q
-        new_p = p + (r + b * r0) * x + r0 * y
+        x, y = q + f1, f2 - c0 * p - c1 * q
+        new_p = p + (r + c1 * r0) * x + r0 * y
         new_q = c * x + r * y - f1
         if moves:
-            j = ends + 2 * k * bodies * ORDER
-            for order in range(bodies * ORDER):
-                new_p += tab[j + 2 * order] * w[changes + order]
-                new_q += tab[j + 2 * order + 1] * w[changes + order]
+            end = table.ends + 2 * k * changes
+            for j in range(changes):
+                new_p += tab[end + 2 * j] * w[places.changes + j]
+                new_q += tab[end + 2 * j + 1] * w[places.changes + j]
         w[2 * k], w[2 * k + 1] = new_p, new_q
-        bend = tab[i + 3] * math.sqrt(a * x * x + y * y)
-        hub_before += d[hub + 2 * k] * p + d[hub + 2 * k + 1] * q
-        hub_after += d[hub + 2 * k] * new_p + d[hub + 2 * k + 1] * new_q
-        hub_bend += d[hub_weight + k] * bend
-        if bodies == 2:
-            motor_before += d[motor + 2 * k] * p + d[motor + 2 * k + 1] * q
-            motor_after += d[motor + 2 * k] * new_p + d[motor + 2 * k + 1] * new_q
-            motor_bend += d[motor_weight + k] * bend
-        if d[at.GAP] > 0.0:
-            mesh_before += d[mesh + 2 * k] * p + d[mesh + 2 * k + 1] * q
-            mesh_after += d[mesh + 2 * k] * new_p + d[mesh + 2 * k + 1] * new_q
-            mesh_bend += d[mesh_weight + k] * bend
-    if not keeps(d, n, s, mode, 0, hub_before, hub_after, hub_bend, moves, tab, bends, w, inputs, changes):
+        w[places.bends + k] = tab[i + 3] * math.sqrt(c0 * x * x + y * y)
+
+
+@njit(forceinline=True)
+def chord_of(a: Arrays, row: int, places: StepScratch) -> Chord:
+    """Return the chord of the row that tells of a body's event, or (last) of the gears'."""
+    d, s, w = a.d, a.s, a.w
+    place, weight = tested_row(a.n, int(s[at.MODE]), row)
+    before, after, bend = 0.0, 0.0, 0.0
+    for k in range(a.n[at.BLOCKS]):
+        i = 2 * k
+        before += d[place + i] * s[at.HEADER + i] + d[place + i + 1] * s[at.HEADER + i + 1]
+        after += d[place + i] * w[i] + d[place + i + 1] * w[i + 1]
+        bend += d[weight + k] * w[places.bends + k]
+    return Chord(before, after, bend)
+
+
+@njit(forceinline=True)
+def keeps(a: Arrays, body: int, moves: bool, table: StepTable, places: StepScratch) -> bool:
+    """Whether a body surely goes on turning or being held over the step."""
+    d, n, s, w = a.d, a.n, a.s, a.w
+    if not rubs(d, n, body):
+        return True
+    chord = chord_of(a, body, places)
+    before, after, bend = chord.before, chord.after, chord.bend
+    if preslides(n, body) and max(abs(before), abs(after)) + bend < QUIET:
+        return True
+    mode, bodies = int(s[at.MODE]), n[at.BODIES]
+    here, stuck = record(n, mode), is_stuck(mode, body)
+    for other in range(bodies if moves else 0):
+        turned = variation(w, places.changes + other * ORDER)
+        bend += table.data[table.bends + body * bodies + other] * turned
+        if stuck:
+            bend += abs(d[here + n[at.HOLD_FORCES] + body * bodies + other]) * turned
+    if not stuck:
+        return min(before * s[at.HUB_DIRECTION + body], after * s[at.HUB_DIRECTION + body]) > bend
+    offset = dot(d, here + n[at.HOLD_DRIVERS] + body * n[at.DRIVERS], w, places.inputs, n[at.DRIVERS])
+    angle, load = s[at.HELD_HUB + body], load_now(d, n, s, mode)
+    high, low = static_budget(d, n, s, body, 1.0, angle, load), static_budget(d, n, s, body, -1.0, angle, load)
+    return max(before, after) + offset + bend < high and min(before, after) + offset - bend > -low
+
+
+@njit(forceinline=True)
+def keeps_touching(a: Arrays, moves: bool, table: StepTable, places: StepScratch) -> bool:
+    """Whether gears with play surely go on touching over the step."""
+    s, bodies, side = a.s, a.n[at.BODIES], a.s[at.GEAR_SIDE]
+    chord = chord_of(a, bodies, places)
+    held, bend = s[at.HELD_MOTOR] - s[at.HELD_HUB], chord.bend  # held angles of free bodies are 0
+    for body in range(bodies if moves else 0):
+        bend += table.data[table.bends + 2 * bodies + body] * variation(a.w, places.changes + body * ORDER)
+    return not min(side * (chord.before + held), side * (chord.after + held)) - 0.5 * a.d[at.GAP] <= bend
+
+
+@njit
+def slide(a: Arrays, command: float, length: float, last: bool, table: StepTable) -> bool:
+    """Move the arm on by a step with a table and return True, if it is sure that no event falls in it.
+
+    `last` says that the step cannot be halved.
+    """
+    d, n, s, w = a.d, a.n, a.s, a.w
+    mode, places = int(s[at.MODE]), step_places(n)
+    if mode >= GEAR_OPEN or not start_forces(a, places):
         return False
-    if bodies == 2 and not keeps(d, n, s, mode, 1, motor_before, motor_after, motor_bend, moves, tab, bends, w, inputs, changes):
+    write_inputs(a, command, places)
+    moves = n[at.VARYING] > 0 and (mode != (1 << n[at.BODIES]) - 1 or n[n[at.TORQUE_LAWS]] > 0)
+    if moves and not (fit_force(a, length, last, table, places) or last):
         return False
-    if d[at.GAP] > 0.0:
-        held = held_motor - held_hub  # held angles of free bodies are 0
-        for body in range(bodies if moves else 0):
-            mesh_bend += tab[bends + 2 * bodies + body] * variation(w, changes + body * ORDER)
-        if min(side * (mesh_before + held), side * (mesh_after + held)) - 0.5 * d[at.GAP] <= mesh_bend:
+    move_blocks(a, moves, table, places)
+    for body in range(n[at.BODIES]):
+        if not keeps(a, body, moves, table, places):
             return False
-    for i in range(size):
+    if d[at.GAP] > 0.0 and not keeps_touching(a, moves, table, places):
+        return False
+    for i in range(2 * n[at.BLOCKS]):
         s[at.HEADER + i] = w[i]
     s[at.TIME] += length
     remember(d, n, s)

@@ -6,13 +6,15 @@ collocation of order eight (Hochbruck and Ostermann, Exponential integrators, Ac
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.bundles import Numbers, Places
+from flexarm_env.plant.bundles import Arrays, Numbers, Places
 from flexarm_env.plant.propagate import dot, inlined_dot
-from flexarm_env.plant.slide_table import NODES, ORDER
+from flexarm_env.plant.slide_table import NODES, ORDER, StepTable
 from flexarm_env.plant.stick_slip import apply_laws, record
 
 #: Coefficients of u to u⁴ from the values at the nodes of what is 0 at u = 0.
@@ -24,61 +26,100 @@ SWEEP_TOLERANCE, QUARTIC_TOLERANCE = 1e-8, 2e-2
 SLOW = 0.3
 
 
+class StepScratch(NamedTuple):
+    """Places in w during a step without events, behind the new state at 0.
+
+    How far each block may stray, the drivers, the motion and the forces at the start, the coefficients of the forces'
+    change; for its fit a motion, the forces of it, their values at the nodes, the motion without the change.
+    """
+
+    bends: int
+    inputs: int
+    start: int
+    forces: int
+    changes: int
+    motion: int
+    new: int
+    values: int
+    free: int
+
+
+@njit(forceinline=True)
+def step_places(n: Places) -> StepScratch:
+    """Lay out the scratch of a step without events."""
+    blocks, bodies = n[at.BLOCKS], n[at.BODIES]
+    bends = 2 * blocks
+    inputs = bends + blocks
+    start = inputs + n[at.DRIVERS]
+    forces = start + 2 * bodies
+    changes = forces + bodies
+    motion = changes + ORDER * bodies
+    new = motion + 2 * bodies
+    values = new + bodies
+    return StepScratch(bends, inputs, start, forces, changes, motion, new, values, values + ORDER * bodies)
+
+
+@njit(forceinline=True)
+def move_freely(a: Arrays, table: StepTable, places: StepScratch) -> None:
+    """Write each quantity at each node as it moves under the drivers alone."""
+    d, n, s, w = a.d, a.n, a.s, a.w
+    bodies, drivers, size = n[at.BODIES], n[at.DRIVERS], 2 * n[at.BLOCKS]
+    holds = record(n, int(s[at.MODE])) + n[at.HOLDS_ANGLE]
+    for i in range(ORDER * 2 * bodies):
+        total = inlined_dot(table.data, table.rows + i * size, s, at.HEADER, size)
+        for j in range(drivers):
+            total += table.data[table.drives + i * drivers + j] * w[places.inputs + j]
+        q = i % (2 * bodies)
+        if q < bodies:
+            total += d[holds + q] * s[at.HELD_HUB + q]
+        w[places.free + i] = total
+
+
+@njit(forceinline=True)
+def sweep_nodes(a: Arrays, length: float, table: StepTable, places: StepScratch) -> float:
+    """Evaluate the forces at the nodes of the motion that they cause; return how much they have changed since the last sweep."""
+    s, w, bodies = a.s, a.w, a.n[at.BODIES]
+    mode = int(s[at.MODE])
+    change = 0.0
+    for node in range(ORDER):
+        for q in range(2 * bodies):
+            i = node * 2 * bodies + q
+            moved = dot(table.data, table.shifts + i * bodies * ORDER, w, places.changes, bodies * ORDER)
+            w[places.motion + q] = w[places.free + i] + moved
+        apply_laws(a, mode, s[at.TIME] + NODES[node] * length, places.motion, places.new)
+        for body in range(bodies):
+            value = w[places.new + body] - w[places.forces + body]
+            change = max(change, abs(value - w[places.values + body * ORDER + node]))
+            w[places.values + body * ORDER + node] = value
+    for body in range(bodies):
+        for order in range(ORDER):
+            total = 0.0
+            for node in range(ORDER):
+                total += COEFFICIENTS[order, node] * w[places.values + body * ORDER + node]
+            w[places.changes + body * ORDER + order] = total
+    return change
+
+
 @njit
-def fit_force(
-    d: Numbers, n: Places, s: Numbers, mode: int, length: float, last: bool, tab: Numbers, rows: int, w: Numbers,
-    inputs: int, start: int, changes: int,
-) -> bool:  # fmt: skip
+def fit_force(a: Arrays, length: float, last: bool, table: StepTable, places: StepScratch) -> bool:
     """Find how the forces change over the step: coefficients of u to u⁴, by body, to w at `changes`.
 
-    `inputs` are the drivers, `start` the motion and after it the forces at the start. Return whether the sweeps
-    converge and the quartic is small.
+    Return whether the sweeps converge and the quartic is small. `last` says that the step cannot be halved.
     """
-    blocks, bodies, drivers = n[at.BLOCKS], n[at.BODIES], n[at.DRIVERS]
-    size, quantities = 2 * blocks, 2 * bodies
-    here = record(n, mode)
-    drives = rows + ORDER * quantities * size
-    shifts = drives + ORDER * quantities * drivers
-    forces = start + quantities
-    motion = changes + ORDER * bodies
-    new = motion + quantities
-    values = new + bodies
-    free = values + ORDER * bodies
-    for i in range(ORDER * quantities):
-        total = inlined_dot(tab, rows + i * size, s, at.HEADER, size)
-        for j in range(drivers):
-            total += tab[drives + i * drivers + j] * w[inputs + j]
-        q = i % quantities
-        if q < bodies:
-            total += d[here + n[at.HOLDS_ANGLE] + q] * s[at.HELD_HUB + q]
-        w[free + i] = total
+    w, bodies = a.w, a.n[at.BODIES]
+    move_freely(a, table, places)
     for i in range(ORDER * bodies):
-        w[values + i] = w[changes + i] = 0.0
+        w[places.values + i] = w[places.changes + i] = 0.0
     scale = 0.0
     for body in range(bodies):
-        scale += abs(w[forces + body])
+        scale += abs(w[places.forces + body])
     before = 1.0
     for sweep in range(MOST_SWEEPS):
-        change = 0.0
-        for node in range(ORDER):
-            for q in range(quantities):
-                i = node * quantities + q
-                w[motion + q] = w[free + i] + dot(tab, shifts + i * bodies * ORDER, w, changes, bodies * ORDER)
-            apply_laws(d, n, s, mode, s[at.TIME] + NODES[node] * length, w, motion, new)
-            for body in range(bodies):
-                value = w[new + body] - w[forces + body]
-                change = max(change, abs(value - w[values + body * ORDER + node]))
-                w[values + body * ORDER + node] = value
-        for body in range(bodies):
-            for order in range(ORDER):
-                total = 0.0
-                for node in range(ORDER):
-                    total += COEFFICIENTS[order, node] * w[values + body * ORDER + node]
-                w[changes + body * ORDER + order] = total
+        change = sweep_nodes(a, length, table, places)
         if change * min(change / before, 1.0) <= SWEEP_TOLERANCE * scale:
             quartic = 0.0
             for body in range(bodies):
-                quartic = max(quartic, abs(w[changes + body * ORDER + ORDER - 1]))
+                quartic = max(quartic, abs(w[places.changes + body * ORDER + ORDER - 1]))
             return quartic <= QUARTIC_TOLERANCE * scale
         if sweep > 0 and change > SLOW * before and not last:
             return False

@@ -7,6 +7,7 @@ force, and by each of that change's coefficients.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -56,9 +57,28 @@ def long_response(c0: float, c1: float, t: float, r: Numbers, first: int) -> Non
     r[first], r[first + 1], r[first + 2], r[first + 3], r[first + 4], r[first + 5], r[first + 6] = c, s, r0, r1, r2, r3, r4
 
 
+class StepTable(NamedTuple):
+    """Table of a step without events: its array and the places in it of its parts.
+
+    `responses`: C, S, R₀, stray of each block. `bends`: how far each tested row strays from its chord per variation of the
+    force on each body. `work`: room for one response. If forces vary, for each node and quantity (angles, then speeds),
+    `rows`: its row on z at the start, `drives`: what each driver adds, `shifts`: what each coefficient of the force's change
+    adds. `ends`: by block, what these add to z in the end.
+    """
+
+    data: Numbers
+    responses: int
+    bends: int
+    work: int
+    rows: int
+    drives: int
+    shifts: int
+    ends: int
+
+
 @njit
 def table_size(n: Places) -> int:
-    """How many numbers the table of a step takes (see prepare_slide)."""
+    """How many numbers the table of a step takes (see StepTable)."""
     blocks, bodies = n[at.BLOCKS], n[at.BODIES]
     size = PER_BLOCK * blocks + (bodies + 1) * bodies + 7
     if n[at.VARYING]:
@@ -67,16 +87,30 @@ def table_size(n: Places) -> int:
     return size
 
 
+@njit(forceinline=True)
+def step_table(n: Places, data: Numbers, first: int) -> StepTable:
+    """Lay out the table of a step that starts at `first`."""
+    blocks, bodies = n[at.BLOCKS], n[at.BODIES]
+    bends = first + PER_BLOCK * blocks
+    work = bends + (bodies + 1) * bodies
+    rows = work + 7
+    drives = rows + ORDER * 2 * bodies * 2 * blocks
+    shifts = drives + ORDER * 2 * bodies * n[at.DRIVERS]
+    ends = shifts + ORDER * 2 * bodies * ORDER * bodies
+    return StepTable(data, first, bends, work, rows, drives, shifts, ends)
+
+
 @njit
 def slides(n: Places) -> bool:
     """Whether the arm has tables for slide: where a glide would not do, and no drag varies along the beam."""
     return n[at.POINTS] == 0 and (n[at.VARYING] > 0 or n[at.BODIES] == 2)
 
 
-@njit
-def slide_table(n: Places, mode: int, slot: int, level: int) -> int:
-    """Where the table of a substep stands, halved so often (see glide.prepare)."""
-    return record(n, mode) + n[at.REACH] + (slot * (DEPTH + 1 if n[at.VARYING] else 1) + level) * table_size(n)
+@njit(forceinline=True)
+def slide_table(d: Numbers, n: Places, mode: int, slot: int, level: int) -> StepTable:
+    """Return the table in d of a substep, halved so often (see glide.prepare)."""
+    level += slot * (DEPTH + 1 if n[at.VARYING] else 1)
+    return step_table(n, d, record(n, mode) + n[at.REACH] + level * table_size(n))
 
 
 @njit
@@ -106,66 +140,74 @@ def bend_by_force(d: Numbers, n: Places, mode: int, row: int, body: int, length:
     return total
 
 
-@njit
-def prepare_slide(d: Numbers, n: Places, mode: int, length: float, to: Numbers, first: int) -> None:
-    """Write the table of a step of some length: per block C, S, R₀, stray; per tested row and body the bend by force.
-
-    If forces vary, for each node and quantity (angles, then speeds): its row on z at the start, what each driver adds,
-    what each coefficient of the force's change adds; then, by block, what these add to z in the end.
-    """
-    here, blocks, bodies, drivers = record(n, mode), n[at.BLOCKS], n[at.BODIES], n[at.DRIVERS]
+@njit(forceinline=True)
+def tabulate_quantities(d: Numbers, n: Places, mode: int, k: int, node: int, length: float, table: StepTable) -> None:
+    """Write what block k contributes to each quantity at a node of a step, from the block's response then."""
+    here, blocks, bodies, drivers, to = record(n, mode), n[at.BLOCKS], n[at.BODIES], n[at.DRIVERS], table.data
     size, quantities = 2 * blocks, 2 * bodies
-    bends = first + PER_BLOCK * blocks
+    c0, c1 = d[here + n[at.C0] + k], d[here + n[at.C1] + k]
+    forcing = here + n[at.FORCING] + 2 * k * drivers
+    c, s = to[table.work], to[table.work + 1]
+    for q in range(quantities):
+        place = n[at.ANGLE] + q * size if q < bodies else n[at.SPEED] + (q - bodies) * size
+        u, v = d[here + place + 2 * k], d[here + place + 2 * k + 1]
+        i = node * quantities + q
+        row = table.rows + i * size + 2 * k
+        if u == 0.0 and v == 0.0:
+            to[row] = to[row + 1] = 0.0
+            continue
+        to[row] = u * c - v * c0 * s
+        to[row + 1] = u * s + v * (c - c1 * s)
+        faster, slower = s, to[table.work + 2]
+        by_first, by_second = u * (faster + c1 * slower) - v * c0 * slower, u * slower + v * faster
+        for j in range(drivers):
+            f, g = d[forcing + j], d[forcing + drivers + j]
+            to[table.drives + i * drivers + j] += by_first * f + by_second * g
+        scale = 1.0
+        for order in range(ORDER):
+            scale *= (order + 1) / length
+            faster, slower = to[table.work + 2 + order], to[table.work + 3 + order]
+            by_first, by_second = u * (faster + c1 * slower) - v * c0 * slower, u * slower + v * faster
+            for body in range(bodies):
+                f, g = d[forcing + at.W_HUB + body], d[forcing + drivers + at.W_HUB + body]
+                to[table.shifts + (i * bodies + body) * ORDER + order] += scale * (by_first * f + by_second * g)
+
+
+@njit(forceinline=True)
+def tabulate_end(d: Numbers, n: Places, mode: int, k: int, length: float, table: StepTable) -> None:
+    """Write what each coefficient of the force's change adds to block k at the end of a step."""
+    here, bodies, drivers, to = record(n, mode), n[at.BODIES], n[at.DRIVERS], table.data
+    c0, c1 = d[here + n[at.C0] + k], d[here + n[at.C1] + k]
+    forcing = here + n[at.FORCING] + 2 * k * drivers
+    for body in range(bodies):
+        f, g = d[forcing + at.W_HUB + body], d[forcing + drivers + at.W_HUB + body]
+        scale = 1.0
+        for order in range(ORDER):
+            scale *= (order + 1) / length
+            faster, slower = to[table.work + 2 + order], to[table.work + 3 + order]
+            i = table.ends + 2 * ((k * bodies + body) * ORDER + order)
+            to[i] = scale * (f * (faster + c1 * slower) + g * slower)
+            to[i + 1] = scale * (g * faster - c0 * slower * f)
+
+
+@njit
+def prepare_slide(d: Numbers, n: Places, mode: int, length: float, table: StepTable) -> None:
+    """Write the table of a step of some length (see StepTable)."""
+    here, blocks, bodies, to = record(n, mode), n[at.BLOCKS], n[at.BODIES], table.data
     for row in range(bodies + 1):
         for body in range(bodies):
-            to[bends + row * bodies + body] = bend_by_force(d, n, mode, row, body, length)
-    response = bends + (bodies + 1) * bodies
-    rows = response + 7
-    drives = rows + ORDER * quantities * size
-    shifts = drives + ORDER * quantities * drivers
-    ends = shifts + ORDER * quantities * ORDER * bodies
+            to[table.bends + row * bodies + body] = bend_by_force(d, n, mode, row, body, length)
     if n[at.VARYING]:
-        for i in range(drives, ends):
+        for i in range(table.drives, table.ends):
             to[i] = 0.0
     for k in range(blocks):
         c0, c1 = d[here + n[at.C0] + k], d[here + n[at.C1] + k]
-        forcing = here + n[at.FORCING] + 2 * k * drivers
         for node in range(0 if n[at.VARYING] else ORDER - 1, ORDER):
-            long_response(c0, c1, NODES[node] * length, to, response)
-            c, s = to[response], to[response + 1]
-            for q in range(quantities if n[at.VARYING] else 0):
-                place = n[at.ANGLE] + q * size if q < bodies else n[at.SPEED] + (q - bodies) * size
-                place += here + 2 * k
-                u, v = d[place], d[place + 1]
-                if u == 0.0 and v == 0.0:
-                    to[rows + (node * quantities + q) * size + 2 * k] = 0.0
-                    to[rows + (node * quantities + q) * size + 2 * k + 1] = 0.0
-                    continue
-                to[rows + (node * quantities + q) * size + 2 * k] = u * c - v * c0 * s
-                to[rows + (node * quantities + q) * size + 2 * k + 1] = u * s + v * (c - c1 * s)
-                faster, slower = s, to[response + 2]
-                by_first, by_second = u * (faster + c1 * slower) - v * c0 * slower, u * slower + v * faster
-                for j in range(drivers):
-                    f, g = d[forcing + j], d[forcing + drivers + j]
-                    to[drives + (node * quantities + q) * drivers + j] += by_first * f + by_second * g
-                scale = 1.0
-                for order in range(ORDER):
-                    scale *= (order + 1) / length
-                    faster, slower = to[response + 2 + order], to[response + 3 + order]
-                    by_first, by_second = u * (faster + c1 * slower) - v * c0 * slower, u * slower + v * faster
-                    for body in range(bodies):
-                        f, g = d[forcing + at.W_HUB + body], d[forcing + drivers + at.W_HUB + body]
-                        i = shifts + ((node * quantities + q) * bodies + body) * ORDER + order
-                        to[i] += scale * (by_first * f + by_second * g)
-        i = first + PER_BLOCK * k
-        to[i], to[i + 1], to[i + 2] = to[response], to[response + 1], to[response + 2]
+            long_response(c0, c1, NODES[node] * length, to, table.work)
+            if n[at.VARYING]:
+                tabulate_quantities(d, n, mode, k, node, length, table)
+        i = table.responses + PER_BLOCK * k
+        to[i], to[i + 1], to[i + 2] = to[table.work], to[table.work + 1], to[table.work + 2]
         to[i + 3] = stray(c0, c1, length)
-        for body in range(bodies if n[at.VARYING] else 0):
-            f, g = d[forcing + at.W_HUB + body], d[forcing + drivers + at.W_HUB + body]
-            scale = 1.0
-            for order in range(ORDER):
-                scale *= (order + 1) / length
-                faster, slower = to[response + 2 + order], to[response + 3 + order]
-                i = ends + 2 * ((k * bodies + body) * ORDER + order)
-                to[i] = scale * (f * (faster + c1 * slower) + g * slower)
-                to[i + 1] = scale * (g * faster - c0 * slower * f)
+        if n[at.VARYING]:
+            tabulate_end(d, n, mode, k, length, table)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from numba import njit
 
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.bundles import Numbers, Places
+from flexarm_env.plant.bundles import Arrays, Numbers, Places, Segment
 from flexarm_env.plant.laws import drag_law, factor_law, friction_law, presliding_law, torque_law, weight_law
 from flexarm_env.plant.propagate import dot
 
@@ -25,22 +27,31 @@ def is_stuck(mode: int, body: int) -> bool:
     return (mode >> body) & 1 == 1
 
 
+class Contact(NamedTuple):
+    """What dry friction depends on: direction (±1), speed along it [rad/s], angle [rad], time [s], load [Nm], whether at rest."""
+
+    direction: float
+    speed: float
+    angle: float
+    time: float
+    load: float
+    at_rest: bool
+
+
 @njit
-def friction_budget(
-    d: Numbers, n: Places, body: int, direction: float, speed: float, angle: float, time: float,
-    load: float, at_rest: bool,
-) -> float:  # fmt: skip
-    """Dry friction [Nm] that opposes motion in `direction`, or resists a push in it at rest: a sum over the effects."""
+def friction_budget(d: Numbers, n: Places, body: int, c: Contact) -> float:
+    """Dry friction [Nm] that opposes motion in a direction, or resists a push in it at rest: a sum over the effects."""
     total = 0.0
     place = n[at.FRICTION_LAWS]
     for j in range(n[place]):
         law = n[place + 2 + 2 * j]
         share = d[law - 2 + body]
         if share > 0.0:
-            total += share * friction_law(n[place + 1 + 2 * j], direction, speed, angle, time, load, at_rest, d, law)
+            kind = n[place + 1 + 2 * j]
+            total += share * friction_law(kind, c.direction, c.speed, c.angle, c.time, c.load, c.at_rest, d, law)
     place = n[at.FACTOR_LAWS]
     for j in range(n[place]):
-        total *= factor_law(n[place + 1 + 2 * j], angle, time, d, n[place + 2 + 2 * j])
+        total *= factor_law(n[place + 1 + 2 * j], c.angle, c.time, d, n[place + 2 + 2 * j])
     return max(total, 0.0)
 
 
@@ -78,27 +89,29 @@ def effect_torque(d: Numbers, n: Places, body: int, angle: float, speed: float, 
 
 
 @njit
-def angle_of(d: Numbers, n: Places, s: Numbers, mode: int, body: int, z: Numbers, first: int) -> float:
+def angle_of(d: Numbers, n: Places, s: Numbers, mode: int, body: int, z: Segment) -> float:
     """Arm-side angle [rad] of hub or motor."""
     here = record(n, mode)
-    free = dot(d, here + n[at.ANGLE] + body * 2 * n[at.BLOCKS], z, first, 2 * n[at.BLOCKS])
+    free = dot(d, here + n[at.ANGLE] + body * 2 * n[at.BLOCKS], z.data, z.first, 2 * n[at.BLOCKS])
     return free + d[here + n[at.HOLDS_ANGLE] + body] * s[at.HELD_HUB + body]
 
 
 @njit
-def read_motion(d: Numbers, n: Places, s: Numbers, mode: int, z: Numbers, first: int, w: Numbers, out: int) -> None:
+def read_motion(a: Arrays, mode: int, z: Segment, out: int) -> None:
     """Write to w at `out` what laws ask for: the bodies' angles, their speeds, velocities at points of the beam."""
+    d, n, w = a.d, a.n, a.w
     here, size, bodies = record(n, mode), 2 * n[at.BLOCKS], n[at.BODIES]
     for body in range(bodies):
-        w[out + body] = angle_of(d, n, s, mode, body, z, first)
-        w[out + bodies + body] = dot(d, here + n[at.SPEED] + body * size, z, first, size)
+        w[out + body] = angle_of(d, n, a.s, mode, body, z)
+        w[out + bodies + body] = dot(d, here + n[at.SPEED] + body * size, z.data, z.first, size)
     for point in range(n[at.POINTS]):
-        w[out + 2 * bodies + point] = dot(d, here + n[at.DRAG_VELOCITY] + point * size, z, first, size)
+        w[out + 2 * bodies + point] = dot(d, here + n[at.DRAG_VELOCITY] + point * size, z.data, z.first, size)
 
 
 @njit(forceinline=True)
-def apply_laws(d: Numbers, n: Places, s: Numbers, mode: int, time: float, w: Numbers, motion: int, out: int) -> None:
+def apply_laws(a: Arrays, mode: int, time: float, motion: int, out: int) -> None:
     """Write to w at `out` the torque of friction and effects on each body, the drag at each point of the beam, its weight."""
+    d, n, s, w = a.d, a.n, a.s, a.w
     bodies = n[at.BODIES]
     last = bodies - 1
     load = gear_load(d, n, s, mode, w[motion + last] - w[motion], w[motion + bodies + last] - w[motion + bodies])
@@ -108,7 +121,7 @@ def apply_laws(d: Numbers, n: Places, s: Numbers, mode: int, time: float, w: Num
             w[out + body] = effect_torque(d, n, body, angle, 0.0, time)
             continue
         direction = s[at.HUB_DIRECTION + body]
-        dry = friction_budget(d, n, body, direction, max(speed * direction, 0.0), angle, time, load, False)
+        dry = friction_budget(d, n, body, Contact(direction, max(speed * direction, 0.0), angle, time, load, False))
         against = yielding(d, n, s, angle, dry) if preslides(n, body) else direction * dry
         w[out + body] = effect_torque(d, n, body, angle, speed, time) - against
     place = n[at.DRAG_LAWS]
@@ -126,15 +139,16 @@ def apply_laws(d: Numbers, n: Places, s: Numbers, mode: int, time: float, w: Num
 
 
 @njit(forceinline=True)
-def evaluate_forces(d: Numbers, n: Places, s: Numbers, mode: int, held: int, w: Numbers, out: int) -> None:
+def evaluate_forces(a: Arrays, mode: int, held: int, out: int) -> None:
     """Write to w at `out` the forces of the laws now, if the bodies of mode `held` are; room for twice as many is used."""
+    n, s, w = a.n, a.s, a.w
     motion = out + n[at.BODIES] + n[at.POINTS]
     if n[at.VARYING]:
-        read_motion(d, n, s, mode, s, at.HEADER, w, motion)
+        read_motion(a, mode, Segment(s, at.HEADER), motion)
     else:  # no law asks
         for i in range(2 * n[at.BODIES]):
             w[motion + i] = 0.0
-    apply_laws(d, n, s, held, s[at.TIME], w, motion, out)
+    apply_laws(a, held, s[at.TIME], motion, out)
 
 
 @njit
@@ -165,7 +179,8 @@ def load_now(d: Numbers, n: Places, s: Numbers, mode: int) -> float:
     if not n[at.VARYING] or n[at.BODIES] == 1:
         return gear_load(d, n, s, mode, 0.0, 0.0)
     here, size = record(n, mode), 2 * n[at.BLOCKS]
-    windup = angle_of(d, n, s, mode, 1, s, at.HEADER) - angle_of(d, n, s, mode, 0, s, at.HEADER)
+    z = Segment(s, at.HEADER)
+    windup = angle_of(d, n, s, mode, 1, z) - angle_of(d, n, s, mode, 0, z)
     rate = dot(d, here + n[at.SPEED] + size, s, at.HEADER, size) - dot(d, here + n[at.SPEED], s, at.HEADER, size)
     return gear_load(d, n, s, mode, windup, rate)
 
@@ -173,9 +188,9 @@ def load_now(d: Numbers, n: Places, s: Numbers, mode: int) -> float:
 @njit
 def static_budget(d: Numbers, n: Places, s: Numbers, body: int, direction: float, angle: float, load: float) -> float:
     """Static friction [Nm] that resists a push in `direction` on a body that stands at an angle."""
-    at_rest = friction_budget(d, n, body, direction, 0.0, angle, s[at.TIME], load, True)
+    at_rest = friction_budget(d, n, body, Contact(direction, 0.0, angle, s[at.TIME], load, True))
     # a body that breaks away against less than what then opposes it would be driven by its own friction
-    return max(at_rest, friction_budget(d, n, body, direction, 0.0, angle, s[at.TIME], load, False))
+    return max(at_rest, friction_budget(d, n, body, Contact(direction, 0.0, angle, s[at.TIME], load, False)))
 
 
 @njit
@@ -185,10 +200,10 @@ def remember(d: Numbers, n: Places, s: Numbers) -> None:
     if not preslides(n, 0) or is_stuck(mode, 0):
         return
     size, direction = 2 * n[at.BLOCKS], s[at.HUB_DIRECTION]
-    angle = angle_of(d, n, s, mode, 0, s, at.HEADER)
+    angle = angle_of(d, n, s, mode, 0, Segment(s, at.HEADER))
     speed = dot(d, record(n, mode) + n[at.SPEED], s, at.HEADER, size)
     load = load_now(d, n, s, mode)
-    dry = friction_budget(d, n, 0, direction, max(speed * direction, 0.0), angle, s[at.TIME], load, False)
+    dry = friction_budget(d, n, 0, Contact(direction, max(speed * direction, 0.0), angle, s[at.TIME], load, False))
     friction = yielding(d, n, s, angle, dry)
     s[at.KNOWN_ANGLE], s[at.KNOWN_FRICTION] = angle, friction
 
@@ -217,23 +232,21 @@ def enter(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, physical: in
 
 
 @njit(forceinline=True)
-def settle(
-    d: Numbers, n: Places, s: Numbers, body: int, command: float, w: Numbers, physical: int,
-    coefficients: int,
-) -> None:  # fmt: skip
+def settle(a: Arrays, body: int, command: float, physical: int, coefficients: int) -> None:
     """Decide whether a body whose speed is zero sticks or turns (thesis section 2.2).
 
     The torque that would have to hold it is set against the budget of static friction.
     """
+    d, n, s, w = a.d, a.n, a.s, a.w
     mode, bit = int(s[at.MODE]), 1 << body
-    evaluate_forces(d, n, s, mode, mode | bit, w, coefficients)
+    evaluate_forces(a, mode, mode | bit, coefficients)
     push = dot(d, record(n, mode) + n[at.HOLD] + body * 2 * n[at.BLOCKS], s, at.HEADER, 2 * n[at.BLOCKS])
     push += applied_offset(d, n, s, body, command, w, coefficients, 0)
     if preslides(n, body):
         s[at.HUB_DIRECTION] = 1.0 if push >= s[at.KNOWN_FRICTION] else -1.0
         return
     direction = 1.0 if push >= 0.0 else -1.0
-    angle = angle_of(d, n, s, mode, body, s, at.HEADER)
+    angle = angle_of(d, n, s, mode, body, Segment(s, at.HEADER))
     turns = abs(push) > static_budget(d, n, s, body, direction, angle, load_now(d, n, s, mode)) or not rubs(d, n, body)
     if turns:
         s[at.HUB_DIRECTION + body] = direction

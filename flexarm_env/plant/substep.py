@@ -51,7 +51,7 @@ def happen(a: Arrays, event: Event, command: float, places: SubstepScratch) -> N
     if event.kind == AGAIN:
         return
     if event.kind != GEARS:
-        settle(d, n, s, int(event.which), command, w, physical, places.coefficients)
+        settle(a, int(event.which), command, physical, places.coefficients)
         return
     to_physical(d, n, s, mode, w, physical)
     if mode & GEAR_OPEN:
@@ -79,8 +79,8 @@ def find_forces(a: Arrays, command: float, t: float, slot: int, places: SubstepS
 
     `slot` names the tables for exactly t, if it is not UNTABULATED.
     """
-    d, n, s, w = a.d, a.n, a.s, a.w
-    mode, blocks, known = int(s[at.MODE]), n[at.BLOCKS], slot >= 0
+    d, n, w = a.d, a.n, a.w
+    mode, blocks, known = int(a.s[at.MODE]), n[at.BLOCKS], slot >= 0
     here = record(n, mode)
     c0, c1 = here + n[at.C0], here + n[at.C1]
     middle = Segment(d if known else w, here + n[at.RESPONSES] + slot * 2 * RESPONSE * blocks if known else places.responses)
@@ -88,8 +88,8 @@ def find_forces(a: Arrays, command: float, t: float, slot: int, places: SubstepS
     if not known:
         respond(d, c0, c1, blocks, t, w, end.first)
     if not n[at.VARYING]:
-        constant_forcing(d, n, s, command, mode, w, places.force)
-        evaluate_forces(d, n, s, mode, mode, w, places.coefficients)
+        constant_forcing(a, command, mode, places.force)
+        evaluate_forces(a, mode, mode, places.coefficients)
         add_forces(d, n, mode, w, places.coefficients, places.force)
         return end
     size = (2 * n[at.BODIES] + n[at.POINTS]) * 3 * (n[at.BODIES] + n[at.POINTS])
@@ -103,9 +103,10 @@ def find_forces(a: Arrays, command: float, t: float, slot: int, places: SubstepS
 
 
 @njit
-def substep(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int, w: Numbers) -> None:
+def substep(a: Arrays, command: float, t: float, slot: int) -> None:
     """Move the arm on by t [s] under a held command; `slot` names the tabulated responses for exactly t."""
-    a, places = Arrays(d, n, s, w), substep_places(n)
+    d, n, s, w = a.d, a.n, a.s, a.w
+    places = substep_places(n)
     left, blind = t, 0.0
     face_motion(d, n, s, int(s[at.MODE]))
     while left > 0.0:

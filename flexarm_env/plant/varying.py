@@ -15,10 +15,9 @@ SWEEPS = 15
 
 
 @njit(forceinline=True)
-def constant_forcing(
-    d: Numbers, n: Places, s: Numbers, command: float, mode: int, w: Numbers, force: int,
-) -> None:  # fmt: skip
+def constant_forcing(a: Arrays, command: float, mode: int, force: int) -> None:
     """Write what stays over the substep: command, constant torque, gears' side, held angles; nothing changes in time."""
+    d, n, s, w = a.d, a.n, a.s, a.w
     row = record(n, mode) + n[at.FORCING]
     for i in range(2 * n[at.BLOCKS]):
         total = d[row + at.W_COMMAND] * command + d[row + at.W_ONE]
@@ -121,12 +120,12 @@ def collocate(a: Arrays, command: float, t: float, table: Segment, shifts: Segme
     blocks, count, quantities = n[at.BLOCKS], n[at.BODIES] + n[at.POINTS], 2 * n[at.BODIES] + n[at.POINTS]
     nodes, motion, coefficients = places.nodes, places.motion, places.coefficients
     new, free = nodes + 3 * count, motion + quantities
-    evaluate_forces(d, n, s, mode, mode, w, nodes)
-    constant_forcing(d, n, s, command, mode, w, places.force)
+    evaluate_forces(a, mode, mode, nodes)
+    constant_forcing(a, command, mode, places.force)
     steady, state = Blocks(here + n[at.C0], here + n[at.C1], blocks, 0), Segment(s, at.HEADER)
     for half in range(2):
         advance(d, steady, Segment(table.data, table.first + half * RESPONSE * blocks), state, w, places.force, places.trial)
-        read_motion(d, n, s, mode, w, places.trial, w, free + half * quantities)
+        read_motion(a, mode, Segment(w, places.trial), free + half * quantities)
     for j in range(count):
         w[nodes + count + j] = w[nodes + 2 * count + j] = w[nodes + j]
     before = 1.0
@@ -139,7 +138,7 @@ def collocate(a: Arrays, command: float, t: float, table: Segment, shifts: Segme
                 for j in range(3 * count):
                     total += shifts.data[row + j] * w[coefficients + j]
                 w[motion + i] = total
-            apply_laws(d, n, s, mode, s[at.TIME] + 0.5 * (half + 1) * t, w, motion, new + half * count)
+            apply_laws(a, mode, s[at.TIME] + 0.5 * (half + 1) * t, motion, new + half * count)
         for j in range(2 * count):
             change = max(change, abs(w[new + j] - w[nodes + count + j]))
             w[nodes + count + j] = w[new + j]
