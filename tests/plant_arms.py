@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
+from flexarm_env.plant.flat_arrays import ActiveLaw
 from flexarm_env.plant.plant import Plant
 from flexarm_env.plant.structure import Sensor, Structure
-from flexarm_env.plant.tables import ActiveLaw
 
 COULOMB = 1.5 * 0.066 + 0.183
 STATIC = 1.5 * 0.09487 + 0.21574

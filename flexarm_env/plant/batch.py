@@ -6,7 +6,7 @@ from numba import njit
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Numbers, Places
-from flexarm_env.plant.control_step import control_step, let_through
+from flexarm_env.plant.control_step import control_step, drive_output
 from flexarm_env.plant.propagate import inlined_dot
 from flexarm_env.plant.readings import measure
 from flexarm_env.plant.replay import is_lost
@@ -57,6 +57,6 @@ def step_batch(arena: Numbers, n: Places, places: Places, first: int, last: int,
         state = arena[places[AT_STATES] + arm * places[STATE_EACH] :]
         push = arena[places[AT_PUSHES] + arm]
         before = state[at.COMMAND]
-        command = let_through(constants, n, state, arena[places[AT_COMMANDS] + arm])
+        command = drive_output(constants, n, state, arena[places[AT_COMMANDS] + arm])
         control_step(constants, n, state, before + push, command + push, scratch)
     look_batch(arena, n, places, first, last)

@@ -8,10 +8,10 @@ from numba import njit
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Numbers, Places
-from flexarm_env.plant.glide import glide
+from flexarm_env.plant.event_free_step import event_free_step
+from flexarm_env.plant.event_free_table import DEPTH, prepare_step_table, step_table, table_size, tabulated_step
 from flexarm_env.plant.laws import drive_law, ramp_law
-from flexarm_env.plant.slide import slide
-from flexarm_env.plant.slide_table import DEPTH, prepare_slide, slide_table, step_table, table_size
+from flexarm_env.plant.quiet_step import quiet_step
 from flexarm_env.plant.substep import UNTABULATED, substep, substep_scratch
 
 
@@ -22,7 +22,7 @@ def scratch_size(n: Places) -> int:
 
 
 @njit(forceinline=True)
-def let_through(d: Numbers, n: Places, s: Numbers, command: float) -> float:
+def drive_output(d: Numbers, n: Places, s: Numbers, command: float) -> float:
     """Return what the drive makes of a command, and remember it."""
     place, before = n[at.DRIVE_LAWS], s[at.COMMAND]
     for j in range(n[place]):
@@ -32,7 +32,7 @@ def let_through(d: Numbers, n: Places, s: Numbers, command: float) -> float:
 
 
 @njit(forceinline=True)
-def on_the_way(d: Numbers, n: Places, before: float, command: float, start: float, end: float) -> float:
+def mean_during_ramp(d: Numbers, n: Places, before: float, command: float, start: float, end: float) -> float:
     """Return the mean of what a drive gives from start to end [s] after it was told to leave one command for the next."""
     place = n[at.RAMP_LAWS]
     for j in range(n[place]):
@@ -41,13 +41,13 @@ def on_the_way(d: Numbers, n: Places, before: float, command: float, start: floa
 
 
 @njit
-def rests(n: Places, mode: int) -> bool:
+def hub_rests(n: Places, mode: int) -> bool:
     """Whether the hub of an arm of one body is held and no force varies for that."""
     return n[at.BODIES] == 1 and mode == 1 and n[n[at.TORQUE_LAWS]] == 0
 
 
 @njit
-def walk(a: Arrays, command: float, t: float, slot: int) -> None:
+def halving_steps(a: Arrays, command: float, t: float, slot: int) -> None:
     """Move the arm on by t [s] in slides, halved where the force varies fast or an event may fall in, else substeps."""
     d, n, s, w = a.d, a.n, a.s, a.w
     whole, done, level = 1 << DEPTH, 0, 0
@@ -55,15 +55,15 @@ def walk(a: Arrays, command: float, t: float, slot: int) -> None:
     while done < whole:
         mode, part = int(s[at.MODE]), whole >> level
         length = t * 0.5**level
-        if slot >= 0 and level == 0 and rests(n, mode):
-            moved = glide(a, command, length, slot)
+        if slot >= 0 and level == 0 and hub_rests(n, mode):
+            moved = quiet_step(a, command, length, slot)
         elif slot >= 0:
-            moved = slide(a, command, length, level == DEPTH, slide_table(d, n, mode, slot, level))
+            moved = event_free_step(a, command, length, level == DEPTH, tabulated_step(d, n, mode, slot, level))
         else:
             if own_mode != mode or own_level != level:
-                prepare_slide(d, n, mode, length, own)
+                prepare_step_table(d, n, mode, length, own)
                 own_mode, own_level = mode, level
-            moved = slide(a, command, length, level == DEPTH, own)
+            moved = event_free_step(a, command, length, level == DEPTH, own)
         if not moved and level < DEPTH:
             level += 1
             continue
@@ -79,10 +79,10 @@ def move(a: Arrays, command: float, t: float, slot: int) -> None:
     """Move the arm on by t [s] under a held command; `slot` names the tables for exactly t."""
     n = a.n
     if n[at.VARYING] and not n[at.POINTS]:
-        walk(a, command, t, slot)
+        halving_steps(a, command, t, slot)
         return
-    tabulated = n[at.GLIDES] == 2 and slot >= 0
-    if tabulated and slide(a, command, t, True, slide_table(a.d, n, int(a.s[at.MODE]), slot, 0)):
+    tabulated = n[at.STEADY_BODIES] == 2 and slot >= 0
+    if tabulated and event_free_step(a, command, t, True, tabulated_step(a.d, n, int(a.s[at.MODE]), slot, 0)):
         return
     substep(a, command, t, slot)
 
@@ -92,11 +92,11 @@ def control_step(d: Numbers, n: Places, s: Numbers, before: float, command: floa
     """Move the arm on by one sample: the last command acts until the delay is over, then the new one."""
     a = Arrays(d, n, s, w)
     for _ in range(n[at.EARLY_SUBSTEPS]):
-        if n[at.GLIDES] != 1 or not glide(a, before, d[at.EARLY_LENGTH], 0):
+        if n[at.STEADY_BODIES] != 1 or not quiet_step(a, before, d[at.EARLY_LENGTH], 0):
             move(a, before, d[at.EARLY_LENGTH], 0)
     for j in range(n[at.LATE_SUBSTEPS]):
-        now = on_the_way(d, n, before, command, j * d[at.LATE_LENGTH], (j + 1) * d[at.LATE_LENGTH])
-        if n[at.GLIDES] != 1 or not glide(a, now, d[at.LATE_LENGTH], 1):
+        now = mean_during_ramp(d, n, before, command, j * d[at.LATE_LENGTH], (j + 1) * d[at.LATE_LENGTH])
+        if n[at.STEADY_BODIES] != 1 or not quiet_step(a, now, d[at.LATE_LENGTH], 1):
             move(a, now, d[at.LATE_LENGTH], 1)
 
 
@@ -110,5 +110,5 @@ def uneven_step(a: Arrays, before: float, command: float, interval: float) -> No
         move(a, before, early, UNTABULATED)
     count = max(math.ceil(late / d[at.LATE_LENGTH] - 1e-9), 1) if late > 0.0 else 0
     for j in range(count):
-        now = on_the_way(d, n, before, command, j * late / count, (j + 1) * late / count)
+        now = mean_during_ramp(d, n, before, command, j * late / count, (j + 1) * late / count)
         move(a, now, late / count, UNTABULATED)

@@ -7,9 +7,9 @@ import math
 from numba import njit
 
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.ahead import value_at
 from flexarm_env.plant.bundles import Line, Motion, Point
 from flexarm_env.plant.propagate import inlined_dot
+from flexarm_env.plant.trial_motion import value_at
 
 #: Shortest interval [s] that is still halved.
 SMALLEST_INTERVAL = 1e-13
@@ -59,7 +59,7 @@ def curvature_bound(m: Motion, line: Line, t: float) -> float:
 
 
 @njit
-def stray(c0: float, c1: float, length: float) -> float:
+def chord_error(c0: float, c1: float, length: float) -> float:
     """Return how far a block's part of a row strays from its chord over a length of time, per bound of its curvature.
 
     Whichever is less: what that bound allows, or, for a fast block, twice the size of its vibration.
@@ -82,14 +82,14 @@ def proves(low: Point, high: Point, second: float, fourth: float) -> tuple[bool,
     if low.value > bend and high.value > bend:
         return True, False
     inner_low, inner_high = low.value + width * low.rate / 3.0, high.value - width * high.rate / 3.0
-    stray = width**4 * fourth / 384.0
-    if min(low.value, inner_low, inner_high, high.value) > stray:
+    chord_error = width**4 * fourth / 384.0
+    if min(low.value, inner_low, inner_high, high.value) > chord_error:
         return True, False
     if max(abs(low.rate), abs(high.rate)) > width * second:
         return False, True
-    middle, stray = 3.0 * (inner_high - inner_low) / width, width**3 * fourth / 124.0
-    rising = min(low.rate, middle, high.rate) > stray
-    return False, rising or max(low.rate, middle, high.rate) < -stray
+    middle, chord_error = 3.0 * (inner_high - inner_low) / width, width**3 * fourth / 124.0
+    rising = min(low.rate, middle, high.rate) > chord_error
+    return False, rising or max(low.rate, middle, high.rate) < -chord_error
 
 
 @njit(forceinline=True)

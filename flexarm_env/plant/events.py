@@ -7,11 +7,11 @@ from typing import NamedTuple
 from numba import njit
 
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.ahead import arrive, copy_size, rate_at_end, start_copy
 from flexarm_env.plant.bundles import Arrays, Blocks, Line, Motion, Numbers, Places, Point, SubstepScratch
 from flexarm_env.plant.crossing import amplitudes, curvature_bound, first_crossing, point_at
 from flexarm_env.plant.propagate import dot
-from flexarm_env.plant.stick_slip import GEAR_OPEN, applied_offset, is_stuck, load_now, record, rubs, static_budget
+from flexarm_env.plant.stick_slip import GEAR_OPEN, applied_offset, has_friction, is_stuck, load_now, record, static_budget
+from flexarm_env.plant.trial_motion import arrive, copy_size, rate_at_end, start_copy
 
 # events: none, a body that stops, a held body that breaks away, gears that part or meet, a moment to look afresh
 NOTHING, STOP, BREAK, GEARS, AGAIN = 0, 1, 2, 3, 4
@@ -26,7 +26,7 @@ class Event(NamedTuple):
 
 
 @njit
-def look(m: Motion, line: Line, start: float, end: float, best: float) -> float:
+def crossing_time(m: Motion, line: Line, start: float, end: float, best: float) -> float:
     """Return when a quantity falls to zero within (start, min(end, best)], or `best`.
 
     The copy of the motion then stands there; its state is kept behind it.
@@ -66,7 +66,7 @@ def play_edge(d: Numbers, s: Numbers, mode: int, side: float) -> float:
 
 
 @njit
-def look_at_gears(m: Motion, n: Places, start: float, end: float, side: float, best: float) -> float:
+def gear_event_time(m: Motion, n: Places, start: float, end: float, side: float, best: float) -> float:
     """Return when gears that touch on `side` part, or open gears meet there; else `best`.
 
     Teeth push and never pull: they part when their torque, damping included, falls to zero, and push again when it
@@ -84,11 +84,11 @@ def look_at_gears(m: Motion, n: Places, start: float, end: float, side: float, b
         sign = -side
         if overlap <= 0.0:
             row, weight = here + n[at.WINDUP], here + n[at.WINDUP_WEIGHT]
-    return look(m, Line(row, weight, sign, edge if closed else -edge, 0.0, 0.0), start, end, best)
+    return crossing_time(m, Line(row, weight, sign, edge if closed else -edge, 0.0, 0.0), start, end, best)
 
 
 @njit
-def look_at_overlap(m: Motion, n: Places, start: float, end: float, side: float, best: float) -> float:
+def overlap_end_time(m: Motion, n: Places, start: float, end: float, side: float, best: float) -> float:
     """Return when teeth that parted while they overlapped are clear of each other; else `best`."""
     d, s, mode = m.d, m.s, int(m.s[at.MODE])
     if not mode & GEAR_OPEN:
@@ -97,11 +97,11 @@ def look_at_overlap(m: Motion, n: Places, start: float, end: float, side: float,
     edge = play_edge(d, s, mode, side)
     if side * dot(d, here + n[at.WINDUP], s, at.HEADER, 2 * n[at.BLOCKS]) + edge <= 0.0:
         return best
-    return look(m, Line(here + n[at.WINDUP], here + n[at.WINDUP_WEIGHT], side, edge, 0.0, 0.0), start, end, best)
+    return crossing_time(m, Line(here + n[at.WINDUP], here + n[at.WINDUP_WEIGHT], side, edge, 0.0, 0.0), start, end, best)
 
 
 @njit(forceinline=True)
-def look_at_held(
+def breakaway_time(
     a: Arrays, m: Motion, body: int, command: float, coefficients: int, start: float, end: float, best: float
 ) -> float:
     """Return when a held body breaks away within (start, end], else `best`; −1 if it does at once."""
@@ -119,7 +119,7 @@ def look_at_held(
         if start == 0.0 and push * (o0 + dot(d, row, s, at.HEADER, 2 * blocks)) > budget:
             return -1.0
         line = Line(row, weight, -push, budget - push * o0, -push * o1, -push * o2)
-        best = look(m, line, start, end, best)
+        best = crossing_time(m, line, start, end, best)
     return best
 
 
@@ -146,23 +146,23 @@ def next_event(a: Arrays, command: float, places: SubstepScratch, start: float, 
     amplitudes(m, end)
     best, kind, which = 2.0 * end + 1.0, NOTHING, 0.0
     for body in range(n[at.BODIES]):
-        if not rubs(d, n, body):
+        if not has_friction(d, n, body):
             continue
         if is_stuck(mode, body):
-            when = look_at_held(a, m, body, command, places.coefficients, start, end, best)
+            when = breakaway_time(a, m, body, command, places.coefficients, start, end, best)
             if when < 0.0:
                 return Event(0.0, BREAK, float(body))
         else:
             row, weight = here + n[at.SPEED] + body * 2 * blocks, here + n[at.SPEED_WEIGHT] + body * blocks
-            when = look(m, Line(row, weight, s[at.HUB_DIRECTION + body], 0.0, 0.0, 0.0), start, end, best)
+            when = crossing_time(m, Line(row, weight, s[at.HUB_DIRECTION + body], 0.0, 0.0, 0.0), start, end, best)
         if when < best:
             best, kind, which = when, BREAK if is_stuck(mode, body) else STOP, float(body)
     for side in range(2 if d[at.GAP] > 0.0 else 0):
         gear_side = 1.0 - 2.0 * side
-        when = look_at_gears(m, n, start, end, gear_side, best)
+        when = gear_event_time(m, n, start, end, gear_side, best)
         if when < best:
             best, kind, which = when, GEARS, gear_side
-        when = look_at_overlap(m, n, start, end, gear_side, best)
+        when = overlap_end_time(m, n, start, end, gear_side, best)
         if when < best:
             best, kind, which = when, AGAIN, gear_side
     return Event(best, kind, which)

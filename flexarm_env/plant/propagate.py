@@ -19,8 +19,8 @@ from flexarm_env.plant.bundles import Blocks, Numbers, Segment
 
 #: 1/k!, for the series of short times, and how many terms it needs below either reach of |c₀| t² + |c₁| t.
 INVERSE_FACTORIALS = np.array([1.0 / math.factorial(k) for k in range(18)])
-SHORT_REACH, SHORT_TERMS = 1e-3, 6
-LONG_REACH, LONG_TERMS = 0.125, 12
+SHORT_ARGUMENT, SHORT_TERMS = 1e-3, 6
+LONG_ARGUMENT, LONG_TERMS = 0.125, 12
 RESPONSE = 5
 
 
@@ -41,7 +41,7 @@ def series(d0: float, d1: float, terms: int) -> tuple[float, float, float, float
 
 
 @njit(forceinline=True)
-def reach_of(c0: float, c1: float, t: float) -> float:
+def series_argument(c0: float, c1: float, t: float) -> float:
     """Return how far a block gets within t [s] from where it would without its stiffness and damping: series' argument."""
     return abs(c0) * t * t + abs(c1 * t)
 
@@ -53,10 +53,10 @@ def block_response(c0: float, c1: float, t: float) -> tuple[float, float, float,
     There are no cases: it holds for any damping, and takes no longer than one sine, cosine and exponential would.
     """
     doublings = 0
-    while reach_of(c0, c1, t) > LONG_REACH:
+    while series_argument(c0, c1, t) > LONG_ARGUMENT:
         t *= 0.5
         doublings += 1
-    if reach_of(c0, c1, t) > SHORT_REACH:
+    if series_argument(c0, c1, t) > SHORT_ARGUMENT:
         c, s, r0, r1, r2 = series(c0 * t * t, c1 * t, LONG_TERMS)
     else:
         c, s, r0, r1, r2 = series(c0 * t * t, c1 * t, SHORT_TERMS)

@@ -12,7 +12,7 @@ from flexarm_env.plant.stick_slip import angle_of, record
 
 
 @njit
-def show(d: Numbers, n: Places, s: Numbers, out: Numbers, first: int) -> None:
+def apply_sensor_laws(d: Numbers, n: Places, s: Numbers, out: Numbers, first: int) -> None:
     """Turn readings into what the sensors' laws make of them."""
     mode, place = int(s[at.MODE]), n[at.SENSOR_LAWS]
     angle = angle_of(d, n, s, mode, 0, Segment(s, at.HEADER))
@@ -33,4 +33,4 @@ def measure(d: Numbers, n: Places, s: Numbers, out: Numbers, first: int) -> None
         total = inlined_dot(d, here + n[at.OUTPUT] + i * size, s, at.HEADER, size) + d[row + at.W_ONE]
         out[first + i] = total + d[row + at.W_HELD_HUB] * s[at.HELD_HUB] + d[row + at.W_HELD_MOTOR] * s[at.HELD_MOTOR]
     if n[n[at.SENSOR_LAWS]] > 0:
-        show(d, n, s, out, first)
+        apply_sensor_laws(d, n, s, out, first)

@@ -8,9 +8,9 @@ from numba import njit
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Gains, Numbers, Places, Samples, Segment
-from flexarm_env.plant.control_step import control_step, let_through, uneven_step
+from flexarm_env.plant.control_step import control_step, drive_output, uneven_step
 from flexarm_env.plant.readings import measure
-from flexarm_env.plant.stick_slip import GEAR_OPEN, angle_of, enter, is_stuck, preslides, settle
+from flexarm_env.plant.stick_slip import GEAR_OPEN, angle_of, decide_stick_or_slip, enter_mode, is_stuck, preslides
 
 #: Sum of block coordinates beyond which a replay gives up and reports NaN.
 RUN_AWAY = 1e9
@@ -37,10 +37,10 @@ def place_at(d: Numbers, n: Places, s: Numbers, physical: Numbers, command: floa
         if speed == 0.0 and not preslides(n, body):
             mode |= 1 << body
     s[at.KNOWN_ANGLE], s[at.KNOWN_FRICTION] = physical[0], 0.0
-    enter(d, n, s, mode, w, 0)
+    enter_mode(d, n, s, mode, w, 0)
     for body in range(n[at.BODIES]):
         if is_stuck(int(s[at.MODE]), body):
-            settle(Arrays(d, n, s, w), body, command, 0, n[at.STATES])
+            decide_stick_or_slip(Arrays(d, n, s, w), body, command, 0, n[at.STATES])
 
 
 @njit
@@ -92,7 +92,7 @@ def replay(
         if k + 1 == count:
             return
         before = s[at.COMMAND]
-        command = let_through(d, n, s, commands[k])
+        command = drive_output(d, n, s, commands[k])
         if intervals.shape[0]:
             uneven_step(Arrays(d, n, s, w), before, command, intervals[k])
         else:

@@ -62,7 +62,7 @@ def preslides(n: Places, body: int) -> bool:
 
 
 @njit
-def yielding(d: Numbers, n: Places, s: Numbers, angle: float, level: float) -> float:
+def presliding_friction(d: Numbers, n: Places, s: Numbers, angle: float, level: float) -> float:
     """Friction [Nm] against motion to positive angles of a hub that preslides, from where it was last known."""
     place = n[at.PRESLIDING_LAWS]
     return presliding_law(n[place + 1], s[at.KNOWN_FRICTION], angle - s[at.KNOWN_ANGLE], level, d, n[place + 2])
@@ -122,7 +122,7 @@ def apply_laws(a: Arrays, mode: int, time: float, motion: int, out: int) -> None
             continue
         direction = s[at.HUB_DIRECTION + body]
         dry = friction_budget(d, n, body, Contact(direction, max(speed * direction, 0.0), angle, time, load, False))
-        against = yielding(d, n, s, angle, dry) if preslides(n, body) else direction * dry
+        against = presliding_friction(d, n, s, angle, dry) if preslides(n, body) else direction * dry
         w[out + body] = effect_torque(d, n, body, angle, speed, time) - against
     place = n[at.DRAG_LAWS]
     for point in range(n[at.POINTS]):
@@ -152,7 +152,7 @@ def evaluate_forces(a: Arrays, mode: int, held: int, out: int) -> None:
 
 
 @njit
-def rubs(d: Numbers, n: Places, body: int) -> bool:
+def has_friction(d: Numbers, n: Places, body: int) -> bool:
     """Whether a body has dry friction at all: without, it never sticks, and zero speed is nothing to it."""
     return d[at.HUB_RUBS + body] > 0.0
 
@@ -194,7 +194,7 @@ def static_budget(d: Numbers, n: Places, s: Numbers, body: int, direction: float
 
 
 @njit
-def remember(d: Numbers, n: Places, s: Numbers) -> None:
+def remember_friction(d: Numbers, n: Places, s: Numbers) -> None:
     """Note the angle and the friction now of a hub that preslides."""
     mode = int(s[at.MODE])
     if not preslides(n, 0) or is_stuck(mode, 0):
@@ -204,7 +204,7 @@ def remember(d: Numbers, n: Places, s: Numbers) -> None:
     speed = dot(d, record(n, mode) + n[at.SPEED], s, at.HEADER, size)
     load = load_now(d, n, s, mode)
     dry = friction_budget(d, n, 0, Contact(direction, max(speed * direction, 0.0), angle, s[at.TIME], load, False))
-    friction = yielding(d, n, s, angle, dry)
+    friction = presliding_friction(d, n, s, angle, dry)
     s[at.KNOWN_ANGLE], s[at.KNOWN_FRICTION] = angle, friction
 
 
@@ -221,7 +221,7 @@ def to_physical(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, out: i
 
 
 @njit
-def enter(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, physical: int) -> None:
+def enter_mode(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, physical: int) -> None:
     """Go over to a mode from the physical state in w at `physical`."""
     s[at.MODE] = mode
     here = record(n, mode)
@@ -232,7 +232,7 @@ def enter(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, physical: in
 
 
 @njit(forceinline=True)
-def settle(a: Arrays, body: int, command: float, physical: int, coefficients: int) -> None:
+def decide_stick_or_slip(a: Arrays, body: int, command: float, physical: int, coefficients: int) -> None:
     """Decide whether a body whose speed is zero sticks or turns (thesis section 2.2).
 
     The torque that would have to hold it is set against the budget of static friction.
@@ -247,10 +247,10 @@ def settle(a: Arrays, body: int, command: float, physical: int, coefficients: in
         return
     direction = 1.0 if push >= 0.0 else -1.0
     angle = angle_of(d, n, s, mode, body, Segment(s, at.HEADER))
-    turns = abs(push) > static_budget(d, n, s, body, direction, angle, load_now(d, n, s, mode)) or not rubs(d, n, body)
+    turns = abs(push) > static_budget(d, n, s, body, direction, angle, load_now(d, n, s, mode)) or not has_friction(d, n, body)
     if turns:
         s[at.HUB_DIRECTION + body] = direction
     if turns == is_stuck(mode, body):
         to_physical(d, n, s, mode, w, physical)
         w[physical + n[at.COORDINATES] + body] = 0.0
-        enter(d, n, s, mode ^ bit, w, physical)
+        enter_mode(d, n, s, mode ^ bit, w, physical)

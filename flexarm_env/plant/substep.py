@@ -5,12 +5,21 @@ from __future__ import annotations
 from numba import njit
 
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.ahead import copy_size
 from flexarm_env.plant.bundles import Arrays, Blocks, Numbers, Places, Segment, SubstepScratch
 from flexarm_env.plant.events import AGAIN, GEARS, NOTHING, Event, next_event
+from flexarm_env.plant.force_parabola import add_forces, constant_forcing, fit_forces, force_influence
 from flexarm_env.plant.propagate import RESPONSE, advance, dot, respond
-from flexarm_env.plant.stick_slip import GEAR_OPEN, enter, evaluate_forces, is_stuck, record, remember, settle, to_physical
-from flexarm_env.plant.varying import add_forces, collocate, constant_forcing, reach
+from flexarm_env.plant.stick_slip import (
+    GEAR_OPEN,
+    decide_stick_or_slip,
+    enter_mode,
+    evaluate_forces,
+    is_stuck,
+    record,
+    remember_friction,
+    to_physical,
+)
+from flexarm_env.plant.trial_motion import copy_size
 
 #: After an event the next is looked for this much later [s], twice as much after each further one in the same substep,
 #: so that events that crowd (white noise at zero speed) cannot hold time still.
@@ -44,26 +53,26 @@ def substep_places(n: Places) -> SubstepScratch:
 
 
 @njit(forceinline=True)
-def happen(a: Arrays, event: Event, command: float, places: SubstepScratch) -> None:
+def apply_event(a: Arrays, event: Event, command: float, places: SubstepScratch) -> None:
     """Let an event take place."""
     d, n, s, w = a.d, a.n, a.s, a.w
     mode, physical = int(s[at.MODE]), places.physical
     if event.kind == AGAIN:
         return
     if event.kind != GEARS:
-        settle(a, int(event.which), command, physical, places.coefficients)
+        decide_stick_or_slip(a, int(event.which), command, physical, places.coefficients)
         return
     to_physical(d, n, s, mode, w, physical)
     if mode & GEAR_OPEN:
         s[at.GEAR_SIDE] = event.which
-        enter(d, n, s, mode & ~GEAR_OPEN, w, physical)
+        enter_mode(d, n, s, mode & ~GEAR_OPEN, w, physical)
     else:
         s[at.GEAR_SIDE] = 0.0
-        enter(d, n, s, mode | GEAR_OPEN, w, physical)
+        enter_mode(d, n, s, mode | GEAR_OPEN, w, physical)
 
 
 @njit(forceinline=True)
-def face_motion(d: Numbers, n: Places, s: Numbers, mode: int) -> None:
+def oppose_motion(d: Numbers, n: Places, s: Numbers, mode: int) -> None:
     """Let friction oppose the motion of a state that was set or corrected from outside."""
     size = 2 * n[at.BLOCKS]
     for body in range(n[at.BODIES]):
@@ -93,12 +102,12 @@ def find_forces(a: Arrays, command: float, t: float, slot: int, places: SubstepS
         add_forces(d, n, mode, w, places.coefficients, places.force)
         return end
     size = (2 * n[at.BODIES] + n[at.POINTS]) * 3 * (n[at.BODIES] + n[at.POINTS])
-    shifts = Segment(middle.data, here + n[at.REACH] + slot * 2 * size if known else places.influence)
+    shifts = Segment(middle.data, here + n[at.STEP_TABLES] + slot * 2 * size if known else places.influence)
     if not known:
         respond(d, c0, c1, blocks, 0.5 * t, w, middle.first)
-        reach(d, n, mode, middle, shifts)
-        reach(d, n, mode, end, Segment(w, shifts.first + size))
-    collocate(a, command, t, middle, shifts, places)
+        force_influence(d, n, mode, middle, shifts)
+        force_influence(d, n, mode, end, Segment(w, shifts.first + size))
+    fit_forces(a, command, t, middle, shifts, places)
     return end
 
 
@@ -108,7 +117,7 @@ def substep(a: Arrays, command: float, t: float, slot: int) -> None:
     d, n, s, w = a.d, a.n, a.s, a.w
     places = substep_places(n)
     left, blind = t, 0.0
-    face_motion(d, n, s, int(s[at.MODE]))
+    oppose_motion(d, n, s, int(s[at.MODE]))
     while left > 0.0:
         table = find_forces(a, command, left, slot if blind == 0.0 else UNTABULATED, places)
         here = record(n, int(s[at.MODE]))
@@ -121,9 +130,9 @@ def substep(a: Arrays, command: float, t: float, slot: int) -> None:
             for i in range(2 * n[at.BLOCKS]):
                 s[at.HEADER + i] = w[(places.trial if nothing else places.found) + i]
             s[at.TIME] += when
-        remember(d, n, s)
+        remember_friction(d, n, s)
         if nothing:
             return
-        happen(a, event, command, places)
+        apply_event(a, event, command, places)
         left -= when
         blind = max(2.0 * blind, FIRST_BLIND_TIME)

@@ -14,8 +14,8 @@ from numba import njit
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Numbers, Places
-from flexarm_env.plant.crossing import stray
-from flexarm_env.plant.propagate import INVERSE_FACTORIALS, LONG_REACH
+from flexarm_env.plant.crossing import chord_error
+from flexarm_env.plant.propagate import INVERSE_FACTORIALS, LONG_ARGUMENT
 from flexarm_env.plant.stick_slip import is_stuck, record
 
 #: Lobatto's nodes after the start; the change of force over a step is a polynomial of this order.
@@ -32,7 +32,7 @@ PER_BLOCK = 4
 def long_response(c0: float, c1: float, t: float, r: Numbers, first: int) -> None:
     """Write C, S, R₀ to R₄ of one block after time t [s] to r: as block_response does, for higher orders."""
     doublings = 0
-    while abs(c0) * t * t + abs(c1) * t > LONG_REACH:
+    while abs(c0) * t * t + abs(c1) * t > LONG_ARGUMENT:
         t *= 0.5
         doublings += 1
     d0, d1 = c0 * t * t, c1 * t
@@ -101,16 +101,16 @@ def step_table(n: Places, data: Numbers, first: int) -> StepTable:
 
 
 @njit
-def slides(n: Places) -> bool:
+def has_step_tables(n: Places) -> bool:
     """Whether the arm has tables for slide: where a glide would not do, and no drag varies along the beam."""
     return n[at.POINTS] == 0 and (n[at.VARYING] > 0 or n[at.BODIES] == 2)
 
 
 @njit(forceinline=True)
-def slide_table(d: Numbers, n: Places, mode: int, slot: int, level: int) -> StepTable:
+def tabulated_step(d: Numbers, n: Places, mode: int, slot: int, level: int) -> StepTable:
     """Return the table in d of a substep, halved so often (see glide.prepare)."""
     level += slot * (DEPTH + 1 if n[at.VARYING] else 1)
-    return step_table(n, d, record(n, mode) + n[at.REACH] + level * table_size(n))
+    return step_table(n, d, record(n, mode) + n[at.STEP_TABLES] + level * table_size(n))
 
 
 @njit
@@ -191,7 +191,7 @@ def tabulate_end(d: Numbers, n: Places, mode: int, k: int, length: float, table:
 
 
 @njit
-def prepare_slide(d: Numbers, n: Places, mode: int, length: float, table: StepTable) -> None:
+def prepare_step_table(d: Numbers, n: Places, mode: int, length: float, table: StepTable) -> None:
     """Write the table of a step of some length (see StepTable)."""
     here, blocks, bodies, to = record(n, mode), n[at.BLOCKS], n[at.BODIES], table.data
     for row in range(bodies + 1):
@@ -208,6 +208,6 @@ def prepare_slide(d: Numbers, n: Places, mode: int, length: float, table: StepTa
                 tabulate_quantities(d, n, mode, k, node, length, table)
         i = table.responses + PER_BLOCK * k
         to[i], to[i + 1], to[i + 2] = to[table.work], to[table.work + 1], to[table.work + 2]
-        to[i + 3] = stray(c0, c1, length)
+        to[i + 3] = chord_error(c0, c1, length)
         if n[at.VARYING]:
             tabulate_end(d, n, mode, k, length, table)

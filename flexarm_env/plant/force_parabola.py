@@ -60,7 +60,7 @@ class Columns(NamedTuple):
 
 
 @njit
-def add_reach(d: Numbers, answer: Answer, table: Segment, columns: Columns, to: Segment) -> None:
+def add_influence(d: Numbers, answer: Answer, table: Segment, columns: Columns, to: Segment) -> None:
     """Add how far forces 1, t, t²/2 along each column move a quantity of one block, by the time of the table."""
     u, v, c0, c1 = answer.u, answer.v, answer.c0, answer.c1
     out = to.first
@@ -76,7 +76,7 @@ def add_reach(d: Numbers, answer: Answer, table: Segment, columns: Columns, to: 
 
 
 @njit
-def reach(d: Numbers, n: Places, mode: int, table: Segment, to: Segment) -> None:
+def force_influence(d: Numbers, n: Places, mode: int, table: Segment, to: Segment) -> None:
     """Write how each force (order by order) moves each quantity of read_motion, by the time of the table."""
     here, size = record(n, mode), 2 * n[at.BLOCKS]
     bodies, count = n[at.BODIES], n[at.BODIES] + n[at.POINTS]
@@ -92,7 +92,7 @@ def reach(d: Numbers, n: Places, mode: int, table: Segment, to: Segment) -> None
         for k in range(n[at.BLOCKS]):
             answer = Answer(d[row + 2 * k], d[row + 2 * k + 1], d[here + n[at.C0] + k], d[here + n[at.C1] + k])
             columns = Columns(here + n[at.FORCE_COLUMNS] + 2 * k, size, count)
-            add_reach(d, answer, Segment(table.data, table.first + RESPONSE * k), columns, Segment(to.data, out))
+            add_influence(d, answer, Segment(table.data, table.first + RESPONSE * k), columns, Segment(to.data, out))
         out += 3 * count
 
 
@@ -107,7 +107,7 @@ def fit_parabola(w: Numbers, start: int, middle: int, end: int, count: int, t: f
 
 
 @njit
-def collocate(a: Arrays, command: float, t: float, table: Segment, shifts: Segment, places: SubstepScratch) -> None:
+def fit_forces(a: Arrays, command: float, t: float, table: Segment, shifts: Segment, places: SubstepScratch) -> None:
     """Find the force over t as the parabola through its values at start, middle and end of the motion it causes.
 
     Order four in t, solved by sweeps over the few quantities that the laws ask for: without the laws' forces they

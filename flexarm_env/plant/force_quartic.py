@@ -13,8 +13,8 @@ from numba import njit
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Numbers, Places
+from flexarm_env.plant.event_free_table import NODES, ORDER, StepTable
 from flexarm_env.plant.propagate import dot, inlined_dot
-from flexarm_env.plant.slide_table import NODES, ORDER, StepTable
 from flexarm_env.plant.stick_slip import apply_laws, record
 
 #: Coefficients of u to u⁴ from the values at the nodes of what is 0 at u = 0.
@@ -101,7 +101,7 @@ def sweep_nodes(a: Arrays, length: float, table: StepTable, places: StepScratch)
 
 
 @njit
-def fit_force(a: Arrays, length: float, last: bool, table: StepTable, places: StepScratch) -> bool:
+def fit_quartic(a: Arrays, length: float, last: bool, table: StepTable, places: StepScratch) -> bool:
     """Find how the forces change over the step: coefficients of u to u⁴, by body, to w at `changes`.
 
     Return whether the sweeps converge and the quartic is small. `last` says that the step cannot be halved.

@@ -9,18 +9,18 @@ from numba import njit
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Numbers
+from flexarm_env.plant.event_free_table import ORDER, PER_BLOCK, StepTable, tested_row
+from flexarm_env.plant.force_quartic import StepScratch, fit_quartic, step_places, variation
 from flexarm_env.plant.propagate import dot
-from flexarm_env.plant.slide_force import StepScratch, fit_force, step_places, variation
-from flexarm_env.plant.slide_table import ORDER, PER_BLOCK, StepTable, tested_row
 from flexarm_env.plant.stick_slip import (
     GEAR_OPEN,
     apply_laws,
+    has_friction,
     is_stuck,
     load_now,
     preslides,
     record,
-    remember,
-    rubs,
+    remember_friction,
     static_budget,
 )
 
@@ -46,7 +46,7 @@ def start_forces(a: Arrays, places: StepScratch) -> bool:
         w[start + body] = dot(d, here + n[at.ANGLE] + body * size, s, at.HEADER, size)
         w[start + body] += d[here + n[at.HOLDS_ANGLE] + body] * s[at.HELD_HUB + body]
         w[start + bodies + body] = dot(d, here + n[at.SPEED] + body * size, s, at.HEADER, size)
-        turns = rubs(d, n, body) and not is_stuck(mode, body)
+        turns = has_friction(d, n, body) and not is_stuck(mode, body)
         if turns and w[start + bodies + body] * s[at.HUB_DIRECTION + body] <= (-QUIET if preslides(n, body) else 0.0):
             return False
     if not varying:
@@ -117,10 +117,10 @@ def chord_of(a: Arrays, row: int, places: StepScratch) -> Chord:
 
 
 @njit(forceinline=True)
-def keeps(a: Arrays, body: int, moves: bool, table: StepTable, places: StepScratch) -> bool:
+def body_keeps_state(a: Arrays, body: int, moves: bool, table: StepTable, places: StepScratch) -> bool:
     """Whether a body surely goes on turning or being held over the step."""
     d, n, s, w = a.d, a.n, a.s, a.w
-    if not rubs(d, n, body):
+    if not has_friction(d, n, body):
         return True
     chord = chord_of(a, body, places)
     before, after, bend = chord.before, chord.after, chord.bend
@@ -142,7 +142,7 @@ def keeps(a: Arrays, body: int, moves: bool, table: StepTable, places: StepScrat
 
 
 @njit(forceinline=True)
-def keeps_touching(a: Arrays, moves: bool, table: StepTable, places: StepScratch) -> bool:
+def gears_keep_touching(a: Arrays, moves: bool, table: StepTable, places: StepScratch) -> bool:
     """Whether gears with play surely go on touching over the step."""
     s, bodies, side = a.s, a.n[at.BODIES], a.s[at.GEAR_SIDE]
     chord = chord_of(a, bodies, places)
@@ -153,7 +153,7 @@ def keeps_touching(a: Arrays, moves: bool, table: StepTable, places: StepScratch
 
 
 @njit
-def slide(a: Arrays, command: float, length: float, last: bool, table: StepTable) -> bool:
+def event_free_step(a: Arrays, command: float, length: float, last: bool, table: StepTable) -> bool:
     """Move the arm on by a step with a table and return True, if it is sure that no event falls in it.
 
     `last` says that the step cannot be halved.
@@ -164,16 +164,16 @@ def slide(a: Arrays, command: float, length: float, last: bool, table: StepTable
         return False
     write_inputs(a, command, places)
     moves = n[at.VARYING] > 0 and (mode != (1 << n[at.BODIES]) - 1 or n[n[at.TORQUE_LAWS]] > 0)
-    if moves and not (fit_force(a, length, last, table, places) or last):
+    if moves and not (fit_quartic(a, length, last, table, places) or last):
         return False
     move_blocks(a, moves, table, places)
     for body in range(n[at.BODIES]):
-        if not keeps(a, body, moves, table, places):
+        if not body_keeps_state(a, body, moves, table, places):
             return False
-    if d[at.GAP] > 0.0 and not keeps_touching(a, moves, table, places):
+    if d[at.GAP] > 0.0 and not gears_keep_touching(a, moves, table, places):
         return False
     for i in range(2 * n[at.BLOCKS]):
         s[at.HEADER + i] = w[i]
     s[at.TIME] += length
-    remember(d, n, s)
+    remember_friction(d, n, s)
     return True
