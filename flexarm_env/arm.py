@@ -17,9 +17,9 @@ from flexarm_env.sensors import Sensor, known_sensors
 
 if TYPE_CHECKING:
     from flexarm_env.linear import LinearArm
+    from flexarm_env.plant.flat_arrays import ActiveLaw
     from flexarm_env.plant.plant import Plant
     from flexarm_env.plant.structure import Structure
-    from flexarm_env.plant.tables import ActiveLaw
 
 Values = Mapping[str, float]
 
@@ -196,7 +196,7 @@ class Arm(Shown):
 
     def laws(self) -> list[ActiveLaw]:
         """Return the laws of friction, torque, drag and drive that act."""
-        from flexarm_env.plant.tables import ActiveLaw
+        from flexarm_env.plant.flat_arrays import ActiveLaw
 
         active = []
         yields = any(self.known[name].port("presliding") for name, _ in self.present())

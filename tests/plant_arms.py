@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
+from flexarm_env.plant.flat_arrays import ActiveLaw
 from flexarm_env.plant.plant import Plant
 from flexarm_env.plant.structure import Structure
-from flexarm_env.plant.tables import ActiveLaw
 from flexarm_env.sensors.arm_angle import ArmAngle
 from flexarm_env.sensors.motor_speed import MotorSpeed
 from flexarm_env.sensors.strain_base import StrainBase

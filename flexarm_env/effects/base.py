@@ -8,19 +8,6 @@ from typing import ClassVar
 
 from flexarm_env.parameters import Parameter
 
-#: What each port that is compiled may name, beside the effect's parameters.
-PORT_ARGUMENTS: dict[str, tuple[str, ...]] = {
-    "friction": ("direction", "speed", "angle", "time", "load", "at_rest"),
-    "factor": ("angle", "time"),
-    "presliding": ("before", "travel", "level"),
-    "torque": ("angle", "speed", "time"),
-    "weight": ("angle",),
-    "drag": ("velocity",),
-    "drive": ("command", "previous", "interval"),
-    "ramp": ("command", "previous", "start", "end"),
-    "sensor": ("reading", "angle", "motor_angle", "time"),
-}
-
 
 class Effect:
     """A physical effect that an arm may have. Subclasses state what follows and give at least one port.

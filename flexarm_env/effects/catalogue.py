@@ -12,9 +12,10 @@ from functools import lru_cache
 from importlib.metadata import entry_points
 from pathlib import Path
 
-from flexarm_env.effects.base import PORT_ARGUMENTS, Effect
+from flexarm_env.effects.base import Effect
 from flexarm_env.effects.checks import checked
 from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.plant.ports import PORT_ARGUMENTS
 
 #: Ports that run in the compiled kernel.
 LAW_PORTS = tuple(PORT_ARGUMENTS)

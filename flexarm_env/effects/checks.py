@@ -5,9 +5,10 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping
 
-from flexarm_env.effects.base import PORT_ARGUMENTS, Effect
+from flexarm_env.effects.base import Effect
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.parameters import Parameter
+from flexarm_env.plant.ports import PORT_ARGUMENTS
 from flexarm_env.units import check_unit
 
 

@@ -200,7 +200,7 @@ class _Rig:
             commands[k] = self._command(plan, k) if k >= self.ahead else 0.0
             waiting.append(commands[k])
             before = s[layout.COMMAND]
-            command = kernel.let_through(d, n, s, waiting.popleft())
+            command = kernel.drive_output(d, n, s, waiting.popleft())
             kernel.control_step(d, n, s, before, command, scratch)
         return commands[: self.count], self.readings[self.ahead :]
 

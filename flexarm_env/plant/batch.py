@@ -4,20 +4,9 @@ from __future__ import annotations
 
 from numba import njit
 
-from flexarm_env.plant.control_step import control_step, let_through
-from flexarm_env.plant.layout import (
-    BLOCKS,
-    BODIES,
-    COMMAND,
-    COORDINATES,
-    HEADER,
-    HELD_HUB,
-    MODE,
-    PHYSICAL,
-    SIGNALS,
-    Numbers,
-    Places,
-)
+from flexarm_env.plant import layout as at
+from flexarm_env.plant.bundles import Numbers, Places
+from flexarm_env.plant.control_step import control_step, drive_output
 from flexarm_env.plant.propagate import inlined_dot
 from flexarm_env.plant.readings import measure
 from flexarm_env.plant.replay import is_lost
@@ -31,17 +20,17 @@ AT_CONSTANTS, CONSTANTS_EACH, AT_STATES, STATE_EACH, AT_COMMANDS, AT_PUSHES, AT_
 
 
 @njit(forceinline=True)
-def write_truth(d: Numbers, n: Places, s: Numbers, out: Numbers, at: int) -> None:
-    """Write hub angle [rad], hub speed [rad/s], tip deflection [m] and whether the hub sticks, to out from `at` on."""
-    mode = int(s[MODE])
-    size, count = 2 * n[BLOCKS], n[COORDINATES]
-    rows = record(n, mode) + n[PHYSICAL]
+def write_truth(d: Numbers, n: Places, s: Numbers, out: Numbers, first: int) -> None:
+    """Write hub angle [rad], hub speed [rad/s], tip deflection [m] and whether the hub sticks, to out from `first` on."""
+    mode = int(s[at.MODE])
+    size, count = 2 * n[at.BLOCKS], n[at.COORDINATES]
+    rows = record(n, mode) + n[at.PHYSICAL]
     stuck = is_stuck(mode, 0)
-    out[at] = s[HELD_HUB] if stuck else inlined_dot(d, rows, s, HEADER, size)
-    out[at + 1] = 0.0 if stuck else inlined_dot(d, rows + count * size, s, HEADER, size)
-    out[at + 2] = inlined_dot(d, rows + (count - 2) * size, s, HEADER, size) if count > n[BODIES] else 0.0
-    out[at + 3] = 1.0 if stuck else 0.0
-    out[at + 4] = 1.0 if is_lost(n, s) else 0.0
+    out[first] = s[at.HELD_HUB] if stuck else inlined_dot(d, rows, s, at.HEADER, size)
+    out[first + 1] = 0.0 if stuck else inlined_dot(d, rows + count * size, s, at.HEADER, size)
+    out[first + 2] = inlined_dot(d, rows + (count - 2) * size, s, at.HEADER, size) if count > n[at.BODIES] else 0.0
+    out[first + 3] = 1.0 if stuck else 0.0
+    out[first + 4] = 1.0 if is_lost(n, s) else 0.0
 
 
 @njit
@@ -50,8 +39,8 @@ def look_batch(arena: Numbers, n: Places, places: Places, first: int, last: int)
     for arm in range(first, last):
         constants = arena[places[AT_CONSTANTS] + arm * places[CONSTANTS_EACH] :]
         state = arena[places[AT_STATES] + arm * places[STATE_EACH] :]
-        measure(constants, n, state, arena, places[AT_LOOKS] + arm * (n[SIGNALS] + TRUTH))
-        write_truth(constants, n, state, arena, places[AT_LOOKS] + arm * (n[SIGNALS] + TRUTH) + n[SIGNALS])
+        measure(constants, n, state, arena, places[AT_LOOKS] + arm * (n[at.SIGNALS] + TRUTH))
+        write_truth(constants, n, state, arena, places[AT_LOOKS] + arm * (n[at.SIGNALS] + TRUTH) + n[at.SIGNALS])
 
 
 @njit
@@ -67,7 +56,7 @@ def step_batch(arena: Numbers, n: Places, places: Places, first: int, last: int,
         constants = arena[places[AT_CONSTANTS] + arm * places[CONSTANTS_EACH] :]
         state = arena[places[AT_STATES] + arm * places[STATE_EACH] :]
         push = arena[places[AT_PUSHES] + arm]
-        before = state[COMMAND]
-        command = let_through(constants, n, state, arena[places[AT_COMMANDS] + arm])
+        before = state[at.COMMAND]
+        command = drive_output(constants, n, state, arena[places[AT_COMMANDS] + arm])
         control_step(constants, n, state, before + push, command + push, scratch)
     look_batch(arena, n, places, first, last)

@@ -16,6 +16,7 @@ from __future__ import annotations
 import ast
 import inspect
 import logging
+import re
 import textwrap
 from collections.abc import Callable, Sequence
 from functools import lru_cache
@@ -24,11 +25,8 @@ from types import ModuleType
 
 import numba
 
-from flexarm_env.effects.base import PORT_ARGUMENTS
 from flexarm_env.generated import generated_module, without_imports
-
-#: What a port's switch returns where no law is active.
-DEFAULTS = {"factor": "1.0", "presliding": "level", "drive": "command", "ramp": "command", "sensor": "reading"}
+from flexarm_env.plant.ports import DEFAULTS, PORT_ARGUMENTS
 
 #: What the kernels' annotations stand for. Without a signature numba compiles a kernel for every literal it is given.
 TYPES = {
@@ -40,6 +38,16 @@ TYPES = {
     "Samples": "float64[:, ::1]",
     "Gains": "float64[:, :, ::1]",
 }
+#: What the generated module imports.
+IMPORTS = """import math
+from collections import namedtuple
+
+import numpy as np
+from numba import boolean, float64, int64, njit, uint64
+from numba.core.types import BaseTuple
+"""
+#: Added to a bundle's name, what the generated module calls its type.
+TYPE = "Type"
 #: Kernels own no array: Python holds all that they are given. So none needs numba's counts of references (_nrt), which are
 #: atomic, take as long as the physics of a quiet step, and which threads would wrest from each other at every arm.
 OPTIONS: dict[str, bool | str] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False}
@@ -53,7 +61,7 @@ ENTRANCES = (
     "place_at",
     "to_physical",
     "measure",
-    "let_through",
+    "drive_output",
     "control_step",
     "replay",
     "look_batch",
@@ -62,15 +70,16 @@ ENTRANCES = (
 
 #: The kernel, each file after those that it calls.
 FILES = (
+    "bundles.py",
     "propagate.py",
-    "ahead.py",
+    "trial_motion.py",
     "crossing.py",
     "stick_slip.py",
-    "varying.py",
-    "slide_table.py",
-    "slide_force.py",
-    "slide.py",
-    "glide.py",
+    "force_parabola.py",
+    "event_free_table.py",
+    "force_quartic.py",
+    "event_free_step.py",
+    "quiet_step.py",
     "events.py",
     "substep.py",
     "control_step.py",
@@ -78,6 +87,9 @@ FILES = (
     "replay.py",
     "batch.py",
 )
+
+#: What kernels write before the places of layout.py, whose names stand bare in the generated module.
+PREFIX = re.compile(r"\bat\.(?=[A-Z])")
 
 Law = tuple[str, str, Callable[..., float], tuple[str, ...]]  # port, effect, function, names of its parameters
 
@@ -106,6 +118,11 @@ def _switch(port: str, laws: Sequence[Law]) -> str:
     return "\n\n".join([*sources, "\n".join(lines)])
 
 
+def _plain(path: Path) -> str:
+    """Read a kernel file without its imports, which the generated module brings itself, and without `at.`."""
+    return PREFIX.sub("", without_imports(path))
+
+
 class _Compiled(ast.NodeTransformer):
     """Turn the kernels' annotations into signatures, so that each is compiled once, and make their indices unsigned."""
 
@@ -124,6 +141,14 @@ class _Compiled(ast.NodeTransformer):
         node.decorator_list = [ast.Call(ast.Name("njit", ast.Load()), signatures, options)]
         return node
 
+    def visit_ClassDef(self, node: ast.ClassDef) -> list[ast.stmt]:
+        """Replace a bundle by a named tuple and the type that signatures name."""
+        fields = [field for field in node.body if isinstance(field, ast.AnnAssign)]
+        names = tuple(ast.unparse(field.target) for field in fields)
+        types = ", ".join(_type_of(field.annotation) for field in fields)
+        text = f"{node.name} = namedtuple({node.name!r}, {names!r})\n"
+        return ast.parse(text + f"{node.name}{TYPE} = BaseTuple.from_types(({types}), {node.name})").body
+
     def visit_Subscript(self, node: ast.Subscript) -> ast.Subscript:
         """Make an index unsigned if it is computed."""
         self.generic_visit(node)
@@ -135,11 +160,16 @@ class _Compiled(ast.NodeTransformer):
 
 
 def _signature(node: ast.FunctionDef) -> ast.expr:
-    names = [a.annotation.id for a in node.args.args if isinstance(a.annotation, ast.Name)]
+    types = ", ".join(_type_of(a.annotation) for a in node.args.args if a.annotation is not None)
     for argument in node.args.args:
         argument.annotation = None
     node.returns = None
-    return ast.parse(f"({', '.join(TYPES[name] for name in names)},)", mode="eval").body
+    return ast.parse(f"({types},)", mode="eval").body
+
+
+def _type_of(annotation: ast.expr) -> str:
+    name = ast.unparse(annotation)
+    return TYPES.get(name, f"{name}{TYPE}")
 
 
 def _unsigned(index: ast.expr) -> ast.expr:
@@ -150,10 +180,9 @@ def _unsigned(index: ast.expr) -> ast.expr:
 def source_of(laws: Sequence[Law]) -> str:
     """Text of the kernel with these laws in its switches, before it is given signatures and unsigned indices."""
     here = Path(__file__).parent
-    imports = ["import math", "import numpy as np", "from numba import boolean, float64, int64, njit, uint64"]
-    parts = [*imports, without_imports(here / "layout.py")]
+    parts = [IMPORTS, _plain(here / "layout.py")]
     parts += [_switch(port, laws) for port in PORT_ARGUMENTS]
-    parts += [without_imports(here / file) for file in FILES]
+    parts += [_plain(here / file) for file in FILES]
     text = "\n\n".join(parts) + "\n"
     return text
 

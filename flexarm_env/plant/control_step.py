@@ -6,122 +6,109 @@ import math
 
 from numba import njit
 
-from flexarm_env.plant.glide import glide
+from flexarm_env.plant import layout as at
+from flexarm_env.plant.bundles import Arrays, Numbers, Places
+from flexarm_env.plant.event_free_step import event_free_step
+from flexarm_env.plant.event_free_table import DEPTH, prepare_step_table, step_table, table_size, tabulated_step
 from flexarm_env.plant.laws import drive_law, ramp_law
-from flexarm_env.plant.layout import (
-    BODIES,
-    COMMAND,
-    DRIVE_LAWS,
-    EARLY_LENGTH,
-    EARLY_SUBSTEPS,
-    GLIDES,
-    INTERVAL,
-    LATE_LENGTH,
-    LATE_SUBSTEPS,
-    MODE,
-    POINTS,
-    RAMP_LAWS,
-    TORQUE_LAWS,
-    VARYING,
-    Numbers,
-    Places,
-)
-from flexarm_env.plant.slide import slide
-from flexarm_env.plant.slide_table import DEPTH, prepare_slide, slide_table, table_size
+from flexarm_env.plant.quiet_step import quiet_step
 from flexarm_env.plant.substep import UNTABULATED, substep, substep_scratch
 
 
 @njit
 def scratch_size(n: Places) -> int:
     """How many numbers of scratch the kernel needs."""
-    return substep_scratch(n) + (table_size(n) if n[VARYING] else 0)
+    return substep_scratch(n) + (table_size(n) if n[at.VARYING] else 0)
 
 
 @njit(forceinline=True)
-def let_through(d: Numbers, n: Places, s: Numbers, command: float) -> float:
+def drive_output(d: Numbers, n: Places, s: Numbers, command: float) -> float:
     """Return what the drive makes of a command, and remember it."""
-    place, before = n[DRIVE_LAWS], s[COMMAND]
+    place, before = n[at.DRIVE_LAWS], s[at.COMMAND]
     for j in range(n[place]):
-        command = drive_law(n[place + 1 + 2 * j], command, before, d[INTERVAL], d, n[place + 2 + 2 * j])
-    s[COMMAND] = command
+        command = drive_law(n[place + 1 + 2 * j], command, before, d[at.INTERVAL], d, n[place + 2 + 2 * j])
+    s[at.COMMAND] = command
     return command
 
 
 @njit(forceinline=True)
-def on_the_way(d: Numbers, n: Places, before: float, command: float, start: float, end: float) -> float:
+def mean_during_ramp(d: Numbers, n: Places, before: float, command: float, start: float, end: float) -> float:
     """Return the mean of what a drive gives from start to end [s] after it was told to leave one command for the next."""
-    place = n[RAMP_LAWS]
+    place = n[at.RAMP_LAWS]
     for j in range(n[place]):
         command = ramp_law(n[place + 1 + 2 * j], command, before, start, end, d, n[place + 2 + 2 * j])
     return command
 
 
 @njit
-def rests(n: Places, mode: int) -> bool:
+def hub_rests(n: Places, mode: int) -> bool:
     """Whether the hub of an arm of one body is held and no force varies for that."""
-    return n[BODIES] == 1 and mode == 1 and n[n[TORQUE_LAWS]] == 0
+    return n[at.BODIES] == 1 and mode == 1 and n[n[at.TORQUE_LAWS]] == 0
 
 
 @njit
-def walk(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int, w: Numbers) -> None:
+def halving_steps(a: Arrays, command: float, t: float, slot: int) -> None:
     """Move the arm on by t [s] in slides, halved where the force varies fast or an event may fall in, else substeps."""
+    d, n, s, w = a.d, a.n, a.s, a.w
     whole, done, level = 1 << DEPTH, 0, 0
-    own, own_mode, own_level = substep_scratch(n), UNTABULATED, 0
+    own, own_mode, own_level = step_table(n, w, substep_scratch(n)), UNTABULATED, 0
     while done < whole:
-        mode, part = int(s[MODE]), whole >> level
+        mode, part = int(s[at.MODE]), whole >> level
         length = t * 0.5**level
-        if slot >= 0 and level == 0 and rests(n, mode):
-            moved = glide(d, n, s, command, length, slot, w)
+        if slot >= 0 and level == 0 and hub_rests(n, mode):
+            moved = quiet_step(a, command, length, slot)
         elif slot >= 0:
-            moved = slide(d, n, s, command, length, level == DEPTH, d, slide_table(n, mode, slot, level), w)
+            moved = event_free_step(a, command, length, level == DEPTH, tabulated_step(d, n, mode, slot, level))
         else:
             if own_mode != mode or own_level != level:
-                prepare_slide(d, n, mode, length, w, own)
+                prepare_step_table(d, n, mode, length, own)
                 own_mode, own_level = mode, level
-            moved = slide(d, n, s, command, length, level == DEPTH, w, own, w)
+            moved = event_free_step(a, command, length, level == DEPTH, own)
         if not moved and level < DEPTH:
             level += 1
             continue
         if not moved:
-            substep(d, n, s, command, length, UNTABULATED, w)
+            substep(a, command, length, UNTABULATED)
         done += part
         if level > 0 and done % (2 * part) == 0:
             level -= 1
 
 
 @njit(forceinline=True)
-def move(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int, w: Numbers) -> None:
+def move(a: Arrays, command: float, t: float, slot: int) -> None:
     """Move the arm on by t [s] under a held command; `slot` names the tables for exactly t."""
-    if n[VARYING] and not n[POINTS]:
-        walk(d, n, s, command, t, slot, w)
+    n = a.n
+    if n[at.VARYING] and not n[at.POINTS]:
+        halving_steps(a, command, t, slot)
         return
-    if n[GLIDES] == 2 and slot >= 0 and slide(d, n, s, command, t, True, d, slide_table(n, int(s[MODE]), slot, 0), w):
+    tabulated = n[at.STEADY_BODIES] == 2 and slot >= 0
+    if tabulated and event_free_step(a, command, t, True, tabulated_step(a.d, n, int(a.s[at.MODE]), slot, 0)):
         return
-    substep(d, n, s, command, t, slot, w)
+    substep(a, command, t, slot)
 
 
 @njit
 def control_step(d: Numbers, n: Places, s: Numbers, before: float, command: float, w: Numbers) -> None:
     """Move the arm on by one sample: the last command acts until the delay is over, then the new one."""
-    for _ in range(n[EARLY_SUBSTEPS]):
-        if n[GLIDES] != 1 or not glide(d, n, s, before, d[EARLY_LENGTH], 0, w):
-            move(d, n, s, before, d[EARLY_LENGTH], 0, w)
-    for j in range(n[LATE_SUBSTEPS]):
-        now = on_the_way(d, n, before, command, j * d[LATE_LENGTH], (j + 1) * d[LATE_LENGTH])
-        if n[GLIDES] != 1 or not glide(d, n, s, now, d[LATE_LENGTH], 1, w):
-            move(d, n, s, now, d[LATE_LENGTH], 1, w)
+    a = Arrays(d, n, s, w)
+    for _ in range(n[at.EARLY_SUBSTEPS]):
+        if n[at.STEADY_BODIES] != 1 or not quiet_step(a, before, d[at.EARLY_LENGTH], 0):
+            move(a, before, d[at.EARLY_LENGTH], 0)
+    for j in range(n[at.LATE_SUBSTEPS]):
+        now = mean_during_ramp(d, n, before, command, j * d[at.LATE_LENGTH], (j + 1) * d[at.LATE_LENGTH])
+        if n[at.STEADY_BODIES] != 1 or not quiet_step(a, now, d[at.LATE_LENGTH], 1):
+            move(a, now, d[at.LATE_LENGTH], 1)
 
 
 @njit(inline="always")
-def uneven_step(
-    d: Numbers, n: Places, s: Numbers, before: float, command: float, interval: float, w: Numbers,
-) -> None:  # fmt: skip
+def uneven_step(a: Arrays, before: float, command: float, interval: float) -> None:
     """Like control_step, over an interval that is not the tabulated one."""
-    early = min(d[EARLY_LENGTH] * n[EARLY_SUBSTEPS], interval)
+    d, n = a.d, a.n
+    early = min(d[at.EARLY_LENGTH] * n[at.EARLY_SUBSTEPS], interval)
     late = interval - early
     if early > 0.0:
-        move(d, n, s, before, early, UNTABULATED, w)
-    count = max(math.ceil(late / d[LATE_LENGTH] - 1e-9), 1) if late > 0.0 else 0
+        move(a, before, early, UNTABULATED)
+    count = max(math.ceil(late / d[at.LATE_LENGTH] - 1e-9), 1) if late > 0.0 else 0
     for j in range(count):
-        now = on_the_way(d, n, before, command, j * late / count, (j + 1) * late / count)
-        move(d, n, s, now, late / count, UNTABULATED, w)
+        now = mean_during_ramp(d, n, before, command, j * late / count, (j + 1) * late / count)
+        move(a, now, late / count, UNTABULATED)

@@ -4,29 +4,21 @@ The kernel takes four arrays and no more, because numba pays for each array at e
 and places n (int64), the state s (float64) and scratch w (float64).
 """
 
-import numpy as np
-from numpy.typing import NDArray
-
-Numbers = NDArray[np.float64]  # (any,), contiguous, as are the others
-Samples = NDArray[np.float64]  # (samples, signals)
-Gains = NDArray[np.float64]  # (modes, 2 blocks + bodies, signals)
-Places = NDArray[np.int64]  # (any,)
-
 # --- n: counts, then places within one mode's record in d, then the lists of active laws
 BODIES, COORDINATES, COUPLED, VARYING, POINTS, BLOCKS, SIGNALS, STATES, MODES, STRIDE = range(10)
 EARLY_SUBSTEPS, LATE_SUBSTEPS, DRIVERS = 10, 11, 12
 C0, C1, RESPONSES, PHYSICAL, MODAL, FORCING, FORCE_COLUMNS, SPEED, SPEED_WEIGHT, ANGLE, HOLDS_ANGLE = range(13, 24)
 WINDUP, WINDUP_WEIGHT, HOLD, HOLD_WEIGHT, HOLD_DRIVERS, HOLD_FORCES, DRAG_VELOCITY = range(24, 31)
 OUTPUT, OUTPUT_DRIVERS = 31, 32
-FRICTION_LAWS, TORQUE_LAWS, DRAG_LAWS, DRIVE_LAWS, PARAMETERS, GLIDES, GLIDE, REACH = range(33, 41)
+FRICTION_LAWS, TORQUE_LAWS, DRAG_LAWS, DRIVE_LAWS, PARAMETERS, STEADY_BODIES, QUIET_TABLE, STEP_TABLES = range(33, 41)
 MESH, MESH_WEIGHT, SENSOR_LAWS, FACTOR_LAWS, PRESLIDING_LAWS, WEIGHT_LAWS, RAMP_LAWS = range(41, 48)
 COUNTS = 48
 
 # --- one block's numbers in GLIDE, all that a step without events needs: C, S, R₀, S + c₁ R₀, c₀, c₁, how much its
 # amplitude bends the tested row, that row's two numbers, its forcing by command, hub torque, 1, held hub, two each
-G_C, G_S, G_R0, G_S_R0, G_C0, G_C1, G_BEND, G_ROW = range(8)
-G_COMMAND, G_HUB, G_ONE, G_HELD = 9, 11, 13, 15
-GLIDE_SIZE = 17
+Q_C, Q_S, Q_R0, Q_S_R0, Q_C0, Q_C1, Q_BEND, Q_ROW = range(8)
+Q_COMMAND, Q_HUB, Q_ONE, Q_HELD = 9, 11, 13, 15
+QUIET_SIZE = 17
 
 # --- d: single constants, before the modes' records
 GAP, TOLERANCE, INTERVAL, EARLY_LENGTH, LATE_LENGTH, HUB_RUBS, MOTOR_RUBS, GEAR_RATIO = range(8)

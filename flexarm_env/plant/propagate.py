@@ -15,12 +15,12 @@ import math
 import numpy as np
 from numba import njit
 
-from flexarm_env.plant.layout import Numbers
+from flexarm_env.plant.bundles import Blocks, Numbers, Segment
 
 #: 1/k!, for the series of short times, and how many terms it needs below either reach of |c₀| t² + |c₁| t.
 INVERSE_FACTORIALS = np.array([1.0 / math.factorial(k) for k in range(18)])
-SHORT_REACH, SHORT_TERMS = 1e-3, 6
-LONG_REACH, LONG_TERMS = 0.125, 12
+SHORT_ARGUMENT, SHORT_TERMS = 1e-3, 6
+LONG_ARGUMENT, LONG_TERMS = 0.125, 12
 RESPONSE = 5
 
 
@@ -41,7 +41,7 @@ def series(d0: float, d1: float, terms: int) -> tuple[float, float, float, float
 
 
 @njit(forceinline=True)
-def reach_of(c0: float, c1: float, t: float) -> float:
+def series_argument(c0: float, c1: float, t: float) -> float:
     """Return how far a block gets within t [s] from where it would without its stiffness and damping: series' argument."""
     return abs(c0) * t * t + abs(c1 * t)
 
@@ -53,10 +53,10 @@ def block_response(c0: float, c1: float, t: float) -> tuple[float, float, float,
     There are no cases: it holds for any damping, and takes no longer than one sine, cosine and exponential would.
     """
     doublings = 0
-    while reach_of(c0, c1, t) > LONG_REACH:
+    while series_argument(c0, c1, t) > LONG_ARGUMENT:
         t *= 0.5
         doublings += 1
-    if reach_of(c0, c1, t) > SHORT_REACH:
+    if series_argument(c0, c1, t) > SHORT_ARGUMENT:
         c, s, r0, r1, r2 = series(c0 * t * t, c1 * t, LONG_TERMS)
     else:
         c, s, r0, r1, r2 = series(c0 * t * t, c1 * t, SHORT_TERMS)
@@ -71,35 +71,32 @@ def block_response(c0: float, c1: float, t: float) -> tuple[float, float, float,
 
 
 @njit(forceinline=True)
-def respond(d: Numbers, c0: int, c1: int, blocks: int, t: float, table: Numbers, at: int) -> None:
-    """Fill table from `at` on with the responses of all blocks after t."""
+def respond(d: Numbers, c0: int, c1: int, blocks: int, t: float, table: Numbers, first: int) -> None:
+    """Fill table from `first` on with the responses of all blocks after t."""
     for k in range(blocks):
         c, s, r0, r1, r2 = block_response(d[c0 + k], d[c1 + k], t)
-        i = at + RESPONSE * k
+        i = first + RESPONSE * k
         table[i], table[i + 1], table[i + 2], table[i + 3], table[i + 4] = c, s, r0, r1, r2
 
 
 @njit(forceinline=True)
-def advance(
-    d: Numbers, c0: int, c1: int, blocks: int, table: Numbers, at: int, z: Numbers, start: int, w: Numbers,
-    force: int, varying: int, out: int,
-) -> None:  # fmt: skip
-    """Write to w at `out`, which may be its own place, where z at `start` gets to by the time of the table at `at`."""
-    for k in range(blocks):
-        j = at + RESPONSE * k
-        c, r, r0 = table[j], table[j + 1], table[j + 2]
-        a, b = d[c0 + k], d[c1 + k]
-        p, q = z[start + 2 * k], z[start + 2 * k + 1]
+def advance(d: Numbers, blocks: Blocks, table: Segment, z: Segment, w: Numbers, force: int, out: int) -> None:
+    """Write to w at `out`, which may be its own place, where z gets to by the time of the table."""
+    for k in range(blocks.number):
+        j = table.first + RESPONSE * k
+        c, r, r0 = table.data[j], table.data[j + 1], table.data[j + 2]
+        a, b = d[blocks.c0 + k], d[blocks.c1 + k]
+        p, q = z.data[z.first + 2 * k], z.data[z.first + 2 * k + 1]
         i = force + 2 * k
         f, g = w[i], w[i + 1]
         new_p = c * p + r * q + f * (r + b * r0) + g * r0
         new_q = (c - b * r) * q - a * (r * p + r0 * f) + r * g
-        if varying:
-            r1, r2 = table[j + 3], table[j + 4]
-            f, g = w[i + 2 * blocks], w[i + 2 * blocks + 1]
+        if blocks.varying:
+            r1, r2 = table.data[j + 3], table.data[j + 4]
+            f, g = w[i + 2 * blocks.number], w[i + 2 * blocks.number + 1]
             new_p += f * (r0 + b * r1) + g * r1
             new_q += g * r0 - a * r1 * f
-            f, g = w[i + 4 * blocks], w[i + 4 * blocks + 1]
+            f, g = w[i + 4 * blocks.number], w[i + 4 * blocks.number + 1]
             new_p += f * (r1 + b * r2) + g * r2
             new_q += g * r1 - a * r2 * f
         w[out + 2 * k] = new_p
@@ -107,22 +104,22 @@ def advance(
 
 
 @njit(forceinline=True)
-def inlined_dot(d: Numbers, row: int, z: Numbers, at: int, count: int) -> float:
-    """Return the row at `row` in d times the numbers at `at` in z, as three sums that need not wait for each other."""
+def inlined_dot(d: Numbers, row: int, z: Numbers, first: int, count: int) -> float:
+    """Return the row at `row` in d times the numbers at `first` in z, as three sums that need not wait for each other."""
     one, two, three = 0.0, 0.0, 0.0
     i = 0
     while i + 2 < count:
-        one += d[row + i] * z[at + i]
-        two += d[row + i + 1] * z[at + i + 1]
-        three += d[row + i + 2] * z[at + i + 2]
+        one += d[row + i] * z[first + i]
+        two += d[row + i + 1] * z[first + i + 1]
+        three += d[row + i + 2] * z[first + i + 2]
         i += 3
     while i < count:
-        one += d[row + i] * z[at + i]
+        one += d[row + i] * z[first + i]
         i += 1
     return one + two + three
 
 
 @njit
-def dot(d: Numbers, row: int, z: Numbers, at: int, count: int) -> float:
+def dot(d: Numbers, row: int, z: Numbers, first: int, count: int) -> float:
     """Return what inlined_dot does, where less code is worth more than a call."""
-    return inlined_dot(d, row, z, at, count)
+    return inlined_dot(d, row, z, first, count)

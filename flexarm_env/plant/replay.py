@@ -6,29 +6,11 @@ import math
 
 from numba import njit
 
-from flexarm_env.plant.control_step import control_step, let_through, uneven_step
-from flexarm_env.plant.layout import (
-    BLOCKS,
-    BODIES,
-    COMMAND,
-    COORDINATES,
-    GAP,
-    GEAR_SIDE,
-    HEADER,
-    HELD_HUB,
-    HUB_DIRECTION,
-    KNOWN_ANGLE,
-    KNOWN_FRICTION,
-    MODE,
-    SIGNALS,
-    STATES,
-    Gains,
-    Numbers,
-    Places,
-    Samples,
-)
+from flexarm_env.plant import layout as at
+from flexarm_env.plant.bundles import Arrays, Gains, Numbers, Places, Samples, Segment
+from flexarm_env.plant.control_step import control_step, drive_output, uneven_step
 from flexarm_env.plant.readings import measure
-from flexarm_env.plant.stick_slip import GEAR_OPEN, angle_of, enter, is_stuck, preslides, settle
+from flexarm_env.plant.stick_slip import GEAR_OPEN, angle_of, decide_stick_or_slip, enter_mode, is_stuck, preslides
 
 #: Sum of block coordinates beyond which a replay gives up and reports NaN.
 RUN_AWAY = 1e9
@@ -38,27 +20,27 @@ RUN_AWAY = 1e9
 def place_at(d: Numbers, n: Places, s: Numbers, physical: Numbers, command: float, w: Numbers) -> None:
     """Put the arm into a physical state (states,): a body at rest sticks if friction holds it."""
     mode = 0
-    if d[GAP] > 0.0:
+    if d[at.GAP] > 0.0:
         windup = physical[1] - physical[0]
-        s[GEAR_SIDE] = 0.0
-        if windup >= 0.5 * d[GAP]:
-            s[GEAR_SIDE] = 1.0
-        elif windup <= -0.5 * d[GAP]:
-            s[GEAR_SIDE] = -1.0
+        s[at.GEAR_SIDE] = 0.0
+        if windup >= 0.5 * d[at.GAP]:
+            s[at.GEAR_SIDE] = 1.0
+        elif windup <= -0.5 * d[at.GAP]:
+            s[at.GEAR_SIDE] = -1.0
         else:
             mode = GEAR_OPEN
-    for i in range(n[STATES]):
+    for i in range(n[at.STATES]):
         w[i] = physical[i]
-    for body in range(n[BODIES]):
-        speed = physical[n[COORDINATES] + body]
-        s[HUB_DIRECTION + body] = 1.0 if speed >= 0.0 else -1.0
+    for body in range(n[at.BODIES]):
+        speed = physical[n[at.COORDINATES] + body]
+        s[at.HUB_DIRECTION + body] = 1.0 if speed >= 0.0 else -1.0
         if speed == 0.0 and not preslides(n, body):
             mode |= 1 << body
-    s[KNOWN_ANGLE], s[KNOWN_FRICTION] = physical[0], 0.0
-    enter(d, n, s, mode, w, 0)
-    for body in range(n[BODIES]):
-        if is_stuck(int(s[MODE]), body):
-            settle(d, n, s, body, command, w, 0, n[STATES])
+    s[at.KNOWN_ANGLE], s[at.KNOWN_FRICTION] = physical[0], 0.0
+    enter_mode(d, n, s, mode, w, 0)
+    for body in range(n[at.BODIES]):
+        if is_stuck(int(s[at.MODE]), body):
+            decide_stick_or_slip(Arrays(d, n, s, w), body, command, 0, n[at.STATES])
 
 
 @njit
@@ -66,25 +48,25 @@ def feed_back(
     d: Numbers, n: Places, s: Numbers, gains: Gains, measured: Samples, readings: Numbers, k: int,
 ) -> None:  # fmt: skip
     """Correct the state by gains (modes, 2 blocks + bodies, signals) times the error of each reading."""
-    mode = int(s[MODE])
-    size = 2 * n[BLOCKS]
-    for j in range(n[SIGNALS]):
-        error = measured[k, j] - readings[k * n[SIGNALS] + j]
+    mode = int(s[at.MODE])
+    size = 2 * n[at.BLOCKS]
+    for j in range(n[at.SIGNALS]):
+        error = measured[k, j] - readings[k * n[at.SIGNALS] + j]
         for i in range(size):
-            s[HEADER + i] += gains[mode, i, j] * error
-        for body in range(n[BODIES]):
+            s[at.HEADER + i] += gains[mode, i, j] * error
+        for body in range(n[at.BODIES]):
             if is_stuck(mode, body):
-                s[HELD_HUB + body] += gains[mode, size + body, j] * error
+                s[at.HELD_HUB + body] += gains[mode, size + body, j] * error
     if preslides(n, 0):  # a correction is no motion, against which friction would build up
-        s[KNOWN_ANGLE] = angle_of(d, n, s, mode, 0, s, HEADER)
+        s[at.KNOWN_ANGLE] = angle_of(d, n, s, mode, 0, Segment(s, at.HEADER))
 
 
 @njit(forceinline=True)
 def is_lost(n: Places, s: Numbers) -> bool:
     """Whether the state has run away: a feedback that does not suit the arm, or values beyond reason."""
     total = 0.0
-    for i in range(2 * n[BLOCKS]):
-        total += abs(s[HEADER + i])
+    for i in range(2 * n[at.BLOCKS]):
+        total += abs(s[at.HEADER + i])
     return not total < RUN_AWAY
 
 
@@ -100,18 +82,18 @@ def replay(
     """
     count = commands.shape[0]
     for k in range(count):
-        measure(d, n, s, readings, k * n[SIGNALS])
+        measure(d, n, s, readings, k * n[at.SIGNALS])
         if is_lost(n, s):
-            for i in range(k * n[SIGNALS], count * n[SIGNALS]):
+            for i in range(k * n[at.SIGNALS], count * n[at.SIGNALS]):
                 readings[i] = math.nan
             return
         if gains.shape[0]:
             feed_back(d, n, s, gains, measured, readings, k)
         if k + 1 == count:
             return
-        before = s[COMMAND]
-        command = let_through(d, n, s, commands[k])
+        before = s[at.COMMAND]
+        command = drive_output(d, n, s, commands[k])
         if intervals.shape[0]:
-            uneven_step(d, n, s, before, command, intervals[k], w)
+            uneven_step(Arrays(d, n, s, w), before, command, intervals[k])
         else:
             control_step(d, n, s, before, command, w)

@@ -2,57 +2,13 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from numba import njit
 
+from flexarm_env.plant import layout as at
+from flexarm_env.plant.bundles import Arrays, Numbers, Places, Segment
 from flexarm_env.plant.laws import drag_law, factor_law, friction_law, presliding_law, torque_law, weight_law
-from flexarm_env.plant.layout import (
-    ANGLE,
-    BLOCKS,
-    BODIES,
-    COMMAND,
-    COORDINATES,
-    DRAG_LAWS,
-    DRAG_VELOCITY,
-    DRIVERS,
-    FACTOR_LAWS,
-    FRICTION_LAWS,
-    GAP,
-    GEAR_SIDE,
-    HEADER,
-    HELD_HUB,
-    HELD_MOTOR,
-    HOLD,
-    HOLD_DRIVERS,
-    HOLD_FORCES,
-    HOLDS_ANGLE,
-    HUB_DIRECTION,
-    HUB_RUBS,
-    KNOWN_ANGLE,
-    KNOWN_FRICTION,
-    LOAD_BY_COMMAND,
-    LOAD_DAMPING,
-    LOAD_STIFFNESS,
-    MODAL,
-    MODE,
-    MODES,
-    PHYSICAL,
-    POINTS,
-    PRESLIDING_LAWS,
-    SPEED,
-    STATES,
-    STRIDE,
-    TIME,
-    TORQUE_LAWS,
-    VARYING,
-    W_COMMAND,
-    W_HELD_HUB,
-    W_HELD_MOTOR,
-    W_ONE,
-    W_SIDE,
-    WEIGHT_LAWS,
-    Numbers,
-    Places,
-)
 from flexarm_env.plant.propagate import dot
 
 #: Bit of a mode whose gears are open; no other stands above it.
@@ -62,7 +18,7 @@ GEAR_OPEN = 4
 @njit
 def record(n: Places, mode: int) -> int:
     """Where the mode's record starts in d."""
-    return n[MODES] + mode * n[STRIDE]
+    return n[at.MODES] + mode * n[at.STRIDE]
 
 
 @njit
@@ -71,81 +27,92 @@ def is_stuck(mode: int, body: int) -> bool:
     return (mode >> body) & 1 == 1
 
 
+class Contact(NamedTuple):
+    """What dry friction depends on: direction (±1), speed along it [rad/s], angle [rad], time [s], load [Nm], whether at rest."""
+
+    direction: float
+    speed: float
+    angle: float
+    time: float
+    load: float
+    at_rest: bool
+
+
 @njit
-def friction_budget(
-    d: Numbers, n: Places, body: int, direction: float, speed: float, angle: float, time: float,
-    load: float, at_rest: bool,
-) -> float:  # fmt: skip
-    """Dry friction [Nm] that opposes motion in `direction`, or resists a push in it at rest: a sum over the effects."""
+def friction_budget(d: Numbers, n: Places, body: int, c: Contact) -> float:
+    """Dry friction [Nm] that opposes motion in a direction, or resists a push in it at rest: a sum over the effects."""
     total = 0.0
-    place = n[FRICTION_LAWS]
+    place = n[at.FRICTION_LAWS]
     for j in range(n[place]):
-        at = n[place + 2 + 2 * j]
-        share = d[at - 2 + body]
+        law = n[place + 2 + 2 * j]
+        share = d[law - 2 + body]
         if share > 0.0:
-            total += share * friction_law(n[place + 1 + 2 * j], direction, speed, angle, time, load, at_rest, d, at)
-    place = n[FACTOR_LAWS]
+            kind = n[place + 1 + 2 * j]
+            total += share * friction_law(kind, c.direction, c.speed, c.angle, c.time, c.load, c.at_rest, d, law)
+    place = n[at.FACTOR_LAWS]
     for j in range(n[place]):
-        total *= factor_law(n[place + 1 + 2 * j], angle, time, d, n[place + 2 + 2 * j])
+        total *= factor_law(n[place + 1 + 2 * j], c.angle, c.time, d, n[place + 2 + 2 * j])
     return max(total, 0.0)
 
 
 @njit
 def preslides(n: Places, body: int) -> bool:
     """Whether a body's friction yields before it slides: it then never sticks."""
-    return body == 0 and n[n[PRESLIDING_LAWS]] > 0
+    return body == 0 and n[n[at.PRESLIDING_LAWS]] > 0
 
 
 @njit
-def yielding(d: Numbers, n: Places, s: Numbers, angle: float, level: float) -> float:
+def presliding_friction(d: Numbers, n: Places, s: Numbers, angle: float, level: float) -> float:
     """Friction [Nm] against motion to positive angles of a hub that preslides, from where it was last known."""
-    place = n[PRESLIDING_LAWS]
-    return presliding_law(n[place + 1], s[KNOWN_FRICTION], angle - s[KNOWN_ANGLE], level, d, n[place + 2])
+    place = n[at.PRESLIDING_LAWS]
+    return presliding_law(n[place + 1], s[at.KNOWN_FRICTION], angle - s[at.KNOWN_ANGLE], level, d, n[place + 2])
 
 
 @njit
 def gear_load(d: Numbers, n: Places, s: Numbers, mode: int, windup: float, rate: float) -> float:
     """Torque [Nm, arm side] that the gears carry; of rigid ones, the drive's."""
-    if n[BODIES] == 1:
-        return d[LOAD_BY_COMMAND] * s[COMMAND]
+    if n[at.BODIES] == 1:
+        return d[at.LOAD_BY_COMMAND] * s[at.COMMAND]
     if mode >= GEAR_OPEN:
         return 0.0
-    return d[LOAD_STIFFNESS] * (windup - 0.5 * s[GEAR_SIDE] * d[GAP]) + d[LOAD_DAMPING] * rate
+    return d[at.LOAD_STIFFNESS] * (windup - 0.5 * s[at.GEAR_SIDE] * d[at.GAP]) + d[at.LOAD_DAMPING] * rate
 
 
 @njit(forceinline=True)
 def effect_torque(d: Numbers, n: Places, body: int, angle: float, speed: float, time: float) -> float:
     """Non-linear torque [Nm] of the effects; all of it acts on the hub."""
     total = 0.0
-    place = n[TORQUE_LAWS]
+    place = n[at.TORQUE_LAWS]
     for j in range(n[place] if body == 0 else 0):
         total += torque_law(n[place + 1 + 2 * j], angle, speed, time, d, n[place + 2 + 2 * j])
     return total
 
 
 @njit
-def angle_of(d: Numbers, n: Places, s: Numbers, mode: int, body: int, z: Numbers, at: int) -> float:
+def angle_of(d: Numbers, n: Places, s: Numbers, mode: int, body: int, z: Segment) -> float:
     """Arm-side angle [rad] of hub or motor."""
     here = record(n, mode)
-    free = dot(d, here + n[ANGLE] + body * 2 * n[BLOCKS], z, at, 2 * n[BLOCKS])
-    return free + d[here + n[HOLDS_ANGLE] + body] * s[HELD_HUB + body]
+    free = dot(d, here + n[at.ANGLE] + body * 2 * n[at.BLOCKS], z.data, z.first, 2 * n[at.BLOCKS])
+    return free + d[here + n[at.HOLDS_ANGLE] + body] * s[at.HELD_HUB + body]
 
 
 @njit
-def read_motion(d: Numbers, n: Places, s: Numbers, mode: int, z: Numbers, at: int, w: Numbers, out: int) -> None:
+def read_motion(a: Arrays, mode: int, z: Segment, out: int) -> None:
     """Write to w at `out` what laws ask for: the bodies' angles, their speeds, velocities at points of the beam."""
-    here, size, bodies = record(n, mode), 2 * n[BLOCKS], n[BODIES]
+    d, n, w = a.d, a.n, a.w
+    here, size, bodies = record(n, mode), 2 * n[at.BLOCKS], n[at.BODIES]
     for body in range(bodies):
-        w[out + body] = angle_of(d, n, s, mode, body, z, at)
-        w[out + bodies + body] = dot(d, here + n[SPEED] + body * size, z, at, size)
-    for point in range(n[POINTS]):
-        w[out + 2 * bodies + point] = dot(d, here + n[DRAG_VELOCITY] + point * size, z, at, size)
+        w[out + body] = angle_of(d, n, a.s, mode, body, z)
+        w[out + bodies + body] = dot(d, here + n[at.SPEED] + body * size, z.data, z.first, size)
+    for point in range(n[at.POINTS]):
+        w[out + 2 * bodies + point] = dot(d, here + n[at.DRAG_VELOCITY] + point * size, z.data, z.first, size)
 
 
 @njit(forceinline=True)
-def apply_laws(d: Numbers, n: Places, s: Numbers, mode: int, time: float, w: Numbers, motion: int, out: int) -> None:
+def apply_laws(a: Arrays, mode: int, time: float, motion: int, out: int) -> None:
     """Write to w at `out` the torque of friction and effects on each body, the drag at each point of the beam, its weight."""
-    bodies = n[BODIES]
+    d, n, s, w = a.d, a.n, a.s, a.w
+    bodies = n[at.BODIES]
     last = bodies - 1
     load = gear_load(d, n, s, mode, w[motion + last] - w[motion], w[motion + bodies + last] - w[motion + bodies])
     for body in range(bodies):
@@ -153,138 +120,137 @@ def apply_laws(d: Numbers, n: Places, s: Numbers, mode: int, time: float, w: Num
         if is_stuck(mode, body):
             w[out + body] = effect_torque(d, n, body, angle, 0.0, time)
             continue
-        direction = s[HUB_DIRECTION + body]
-        dry = friction_budget(d, n, body, direction, max(speed * direction, 0.0), angle, time, load, False)
-        against = yielding(d, n, s, angle, dry) if preslides(n, body) else direction * dry
+        direction = s[at.HUB_DIRECTION + body]
+        dry = friction_budget(d, n, body, Contact(direction, max(speed * direction, 0.0), angle, time, load, False))
+        against = presliding_friction(d, n, s, angle, dry) if preslides(n, body) else direction * dry
         w[out + body] = effect_torque(d, n, body, angle, speed, time) - against
-    place = n[DRAG_LAWS]
-    for point in range(n[POINTS]):
+    place = n[at.DRAG_LAWS]
+    for point in range(n[at.POINTS]):
         total = 0.0
         for j in range(n[place]):
             total += drag_law(n[place + 1 + 2 * j], w[motion + 2 * bodies + point], d, n[place + 2 + 2 * j])
         w[out + bodies + point] = total
-    place = n[WEIGHT_LAWS]
+    place = n[at.WEIGHT_LAWS]
     if n[place] > 0:
         total = 0.0
         for j in range(n[place]):
             total += weight_law(n[place + 1 + 2 * j], w[motion], d, n[place + 2 + 2 * j])
-        w[out + bodies + n[POINTS] - 1] = total
+        w[out + bodies + n[at.POINTS] - 1] = total
 
 
 @njit(forceinline=True)
-def evaluate_forces(d: Numbers, n: Places, s: Numbers, mode: int, held: int, w: Numbers, out: int) -> None:
+def evaluate_forces(a: Arrays, mode: int, held: int, out: int) -> None:
     """Write to w at `out` the forces of the laws now, if the bodies of mode `held` are; room for twice as many is used."""
-    motion = out + n[BODIES] + n[POINTS]
-    if n[VARYING]:
-        read_motion(d, n, s, mode, s, HEADER, w, motion)
+    n, s, w = a.n, a.s, a.w
+    motion = out + n[at.BODIES] + n[at.POINTS]
+    if n[at.VARYING]:
+        read_motion(a, mode, Segment(s, at.HEADER), motion)
     else:  # no law asks
-        for i in range(2 * n[BODIES]):
+        for i in range(2 * n[at.BODIES]):
             w[motion + i] = 0.0
-    apply_laws(d, n, s, held, s[TIME], w, motion, out)
+    apply_laws(a, held, s[at.TIME], motion, out)
 
 
 @njit
-def rubs(d: Numbers, n: Places, body: int) -> bool:
+def has_friction(d: Numbers, n: Places, body: int) -> bool:
     """Whether a body has dry friction at all: without, it never sticks, and zero speed is nothing to it."""
-    return d[HUB_RUBS + body] > 0.0
+    return d[at.HUB_RUBS + body] > 0.0
 
 
 @njit
 def applied_offset(
-    d: Numbers, n: Places, s: Numbers, mode: int, body: int, command: float, w: Numbers,
-    coefficients: int, order: int,
-) -> float:  # fmt: skip
+    d: Numbers, n: Places, s: Numbers, body: int, command: float, w: Numbers, coefficients: int, order: int
+) -> float:
     """Part of the torque on a body that stands that is not in its row on z: its coefficient of 1, t, t²/2."""
-    here = record(n, mode)
+    here = record(n, int(s[at.MODE]))
     total = 0.0
     if order == 0:
-        row = here + n[HOLD_DRIVERS] + body * n[DRIVERS]
-        total = d[row + W_COMMAND] * command + d[row + W_ONE] + d[row + W_SIDE] * s[GEAR_SIDE]
-        total += d[row + W_HELD_HUB] * s[HELD_HUB] + d[row + W_HELD_MOTOR] * s[HELD_MOTOR]
-    count = n[BODIES] + n[POINTS]
-    row = here + n[HOLD_FORCES] + body * count
+        row = here + n[at.HOLD_DRIVERS] + body * n[at.DRIVERS]
+        total = d[row + at.W_COMMAND] * command + d[row + at.W_ONE] + d[row + at.W_SIDE] * s[at.GEAR_SIDE]
+        total += d[row + at.W_HELD_HUB] * s[at.HELD_HUB] + d[row + at.W_HELD_MOTOR] * s[at.HELD_MOTOR]
+    count = n[at.BODIES] + n[at.POINTS]
+    row = here + n[at.HOLD_FORCES] + body * count
     return total + dot(d, row, w, coefficients + order * count, count)
 
 
 @njit
 def load_now(d: Numbers, n: Places, s: Numbers, mode: int) -> float:
     """Torque [Nm, arm side] that the gears carry now, if any law could ask for it."""
-    if not n[VARYING] or n[BODIES] == 1:
+    if not n[at.VARYING] or n[at.BODIES] == 1:
         return gear_load(d, n, s, mode, 0.0, 0.0)
-    here, size = record(n, mode), 2 * n[BLOCKS]
-    windup = angle_of(d, n, s, mode, 1, s, HEADER) - angle_of(d, n, s, mode, 0, s, HEADER)
-    rate = dot(d, here + n[SPEED] + size, s, HEADER, size) - dot(d, here + n[SPEED], s, HEADER, size)
+    here, size = record(n, mode), 2 * n[at.BLOCKS]
+    z = Segment(s, at.HEADER)
+    windup = angle_of(d, n, s, mode, 1, z) - angle_of(d, n, s, mode, 0, z)
+    rate = dot(d, here + n[at.SPEED] + size, s, at.HEADER, size) - dot(d, here + n[at.SPEED], s, at.HEADER, size)
     return gear_load(d, n, s, mode, windup, rate)
 
 
 @njit
 def static_budget(d: Numbers, n: Places, s: Numbers, body: int, direction: float, angle: float, load: float) -> float:
     """Static friction [Nm] that resists a push in `direction` on a body that stands at an angle."""
-    at_rest = friction_budget(d, n, body, direction, 0.0, angle, s[TIME], load, True)
+    at_rest = friction_budget(d, n, body, Contact(direction, 0.0, angle, s[at.TIME], load, True))
     # a body that breaks away against less than what then opposes it would be driven by its own friction
-    return max(at_rest, friction_budget(d, n, body, direction, 0.0, angle, s[TIME], load, False))
+    return max(at_rest, friction_budget(d, n, body, Contact(direction, 0.0, angle, s[at.TIME], load, False)))
 
 
 @njit
-def remember(d: Numbers, n: Places, s: Numbers) -> None:
+def remember_friction(d: Numbers, n: Places, s: Numbers) -> None:
     """Note the angle and the friction now of a hub that preslides."""
-    mode = int(s[MODE])
+    mode = int(s[at.MODE])
     if not preslides(n, 0) or is_stuck(mode, 0):
         return
-    size, direction = 2 * n[BLOCKS], s[HUB_DIRECTION]
-    angle = angle_of(d, n, s, mode, 0, s, HEADER)
-    speed = dot(d, record(n, mode) + n[SPEED], s, HEADER, size)
+    size, direction = 2 * n[at.BLOCKS], s[at.HUB_DIRECTION]
+    angle = angle_of(d, n, s, mode, 0, Segment(s, at.HEADER))
+    speed = dot(d, record(n, mode) + n[at.SPEED], s, at.HEADER, size)
     load = load_now(d, n, s, mode)
-    dry = friction_budget(d, n, 0, direction, max(speed * direction, 0.0), angle, s[TIME], load, False)
-    friction = yielding(d, n, s, angle, dry)
-    s[KNOWN_ANGLE], s[KNOWN_FRICTION] = angle, friction
+    dry = friction_budget(d, n, 0, Contact(direction, max(speed * direction, 0.0), angle, s[at.TIME], load, False))
+    friction = presliding_friction(d, n, s, angle, dry)
+    s[at.KNOWN_ANGLE], s[at.KNOWN_FRICTION] = angle, friction
 
 
 @njit
 def to_physical(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, out: int) -> None:
     """Write [q, q̇, extra] to w at `out`."""
-    here, size = record(n, mode), 2 * n[BLOCKS]
-    for i in range(n[STATES]):
-        w[out + i] = dot(d, here + n[PHYSICAL] + i * size, s, HEADER, size)
-    for body in range(n[BODIES]):
+    here, size = record(n, mode), 2 * n[at.BLOCKS]
+    for i in range(n[at.STATES]):
+        w[out + i] = dot(d, here + n[at.PHYSICAL] + i * size, s, at.HEADER, size)
+    for body in range(n[at.BODIES]):
         if is_stuck(mode, body):
-            w[out + body] = s[HELD_HUB + body]
-            w[out + n[COORDINATES] + body] = 0.0
+            w[out + body] = s[at.HELD_HUB + body]
+            w[out + n[at.COORDINATES] + body] = 0.0
 
 
 @njit
-def enter(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, physical: int) -> None:
+def enter_mode(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, physical: int) -> None:
     """Go over to a mode from the physical state in w at `physical`."""
-    s[MODE] = mode
+    s[at.MODE] = mode
     here = record(n, mode)
-    for body in range(n[BODIES]):
-        s[HELD_HUB + body] = w[physical + body] if is_stuck(mode, body) else 0.0
-    for i in range(2 * n[BLOCKS]):
-        s[HEADER + i] = dot(d, here + n[MODAL] + i * n[STATES], w, physical, n[STATES])
+    for body in range(n[at.BODIES]):
+        s[at.HELD_HUB + body] = w[physical + body] if is_stuck(mode, body) else 0.0
+    for i in range(2 * n[at.BLOCKS]):
+        s[at.HEADER + i] = dot(d, here + n[at.MODAL] + i * n[at.STATES], w, physical, n[at.STATES])
 
 
 @njit(forceinline=True)
-def settle(
-    d: Numbers, n: Places, s: Numbers, body: int, command: float, w: Numbers, physical: int,
-    coefficients: int,
-) -> None:  # fmt: skip
+def decide_stick_or_slip(a: Arrays, body: int, command: float, physical: int, coefficients: int) -> None:
     """Decide whether a body whose speed is zero sticks or turns (thesis section 2.2).
 
     The torque that would have to hold it is set against the budget of static friction.
     """
-    mode, bit = int(s[MODE]), 1 << body
-    evaluate_forces(d, n, s, mode, mode | bit, w, coefficients)
-    push = dot(d, record(n, mode) + n[HOLD] + body * 2 * n[BLOCKS], s, HEADER, 2 * n[BLOCKS])
-    push += applied_offset(d, n, s, mode, body, command, w, coefficients, 0)
+    d, n, s, w = a.d, a.n, a.s, a.w
+    mode, bit = int(s[at.MODE]), 1 << body
+    evaluate_forces(a, mode, mode | bit, coefficients)
+    push = dot(d, record(n, mode) + n[at.HOLD] + body * 2 * n[at.BLOCKS], s, at.HEADER, 2 * n[at.BLOCKS])
+    push += applied_offset(d, n, s, body, command, w, coefficients, 0)
     if preslides(n, body):
-        s[HUB_DIRECTION] = 1.0 if push >= s[KNOWN_FRICTION] else -1.0
+        s[at.HUB_DIRECTION] = 1.0 if push >= s[at.KNOWN_FRICTION] else -1.0
         return
     direction = 1.0 if push >= 0.0 else -1.0
-    angle = angle_of(d, n, s, mode, body, s, HEADER)
-    turns = abs(push) > static_budget(d, n, s, body, direction, angle, load_now(d, n, s, mode)) or not rubs(d, n, body)
+    angle = angle_of(d, n, s, mode, body, Segment(s, at.HEADER))
+    turns = abs(push) > static_budget(d, n, s, body, direction, angle, load_now(d, n, s, mode)) or not has_friction(d, n, body)
     if turns:
-        s[HUB_DIRECTION + body] = direction
+        s[at.HUB_DIRECTION + body] = direction
     if turns == is_stuck(mode, body):
         to_physical(d, n, s, mode, w, physical)
-        w[physical + n[COORDINATES] + body] = 0.0
-        enter(d, n, s, mode ^ bit, w, physical)
+        w[physical + n[at.COORDINATES] + body] = 0.0
+        enter_mode(d, n, s, mode ^ bit, w, physical)

@@ -4,30 +4,22 @@ from __future__ import annotations
 
 from numba import njit
 
-from flexarm_env.plant.ahead import copy_size
-from flexarm_env.plant.events import AGAIN, GEARS, NOTHING, found_at, next_event
-from flexarm_env.plant.layout import (
-    BLOCKS,
-    BODIES,
-    C0,
-    C1,
-    GEAR_SIDE,
-    HEADER,
-    HUB_DIRECTION,
-    MODE,
-    POINTS,
-    REACH,
-    RESPONSES,
-    SPEED,
-    STATES,
-    TIME,
-    VARYING,
-    Numbers,
-    Places,
-)
+from flexarm_env.plant import layout as at
+from flexarm_env.plant.bundles import Arrays, Blocks, Numbers, Places, Segment, SubstepScratch
+from flexarm_env.plant.events import AGAIN, GEARS, NOTHING, Event, next_event
+from flexarm_env.plant.force_parabola import add_forces, constant_forcing, fit_forces, force_influence
 from flexarm_env.plant.propagate import RESPONSE, advance, dot, respond
-from flexarm_env.plant.stick_slip import GEAR_OPEN, enter, evaluate_forces, is_stuck, record, remember, settle, to_physical
-from flexarm_env.plant.varying import add_forces, collocate, constant_forcing, reach
+from flexarm_env.plant.stick_slip import (
+    GEAR_OPEN,
+    decide_stick_or_slip,
+    enter_mode,
+    evaluate_forces,
+    is_stuck,
+    record,
+    remember_friction,
+    to_physical,
+)
+from flexarm_env.plant.trial_motion import copy_size
 
 #: After an event the next is looked for this much later [s], twice as much after each further one in the same substep,
 #: so that events that crowd (white noise at zero speed) cannot hold time still.
@@ -38,90 +30,109 @@ UNTABULATED = -1
 @njit
 def substep_scratch(n: Places) -> int:
     """How many numbers of scratch a substep needs."""
-    count = n[BODIES] + n[POINTS]
-    return 26 * n[BLOCKS] + copy_size(n[BLOCKS]) + n[STATES] + (14 + 12 * count) * count + 64
+    count = n[at.BODIES] + n[at.POINTS]
+    return 26 * n[at.BLOCKS] + copy_size(n[at.BLOCKS]) + n[at.STATES] + (14 + 12 * count) * count + 64
 
 
 @njit(forceinline=True)
-def happen(
-    d: Numbers, n: Places, s: Numbers, kind: int, which: float, command: float, w: Numbers,
-    physical: int, coefficients: int,
-) -> None:  # fmt: skip
-    """Let an event take place."""
-    mode = int(s[MODE])
-    if kind == AGAIN:
-        return
-    if kind != GEARS:
-        settle(d, n, s, int(which), command, w, physical, coefficients)
-        return
-    to_physical(d, n, s, mode, w, physical)
-    if mode & GEAR_OPEN:
-        s[GEAR_SIDE] = which
-        enter(d, n, s, mode & ~GEAR_OPEN, w, physical)
-    else:
-        s[GEAR_SIDE] = 0.0
-        enter(d, n, s, mode | GEAR_OPEN, w, physical)
-
-
-@njit(forceinline=True)
-def face_motion(d: Numbers, n: Places, s: Numbers, mode: int) -> None:
-    """Let friction oppose the motion of a state that was set or corrected from outside."""
-    size = 2 * n[BLOCKS]
-    for body in range(n[BODIES]):
-        if not is_stuck(mode, body):
-            speed = dot(d, record(n, mode) + n[SPEED] + body * size, s, HEADER, size)
-            if speed * s[HUB_DIRECTION + body] < 0.0:
-                s[HUB_DIRECTION + body] *= -1.0
-
-
-@njit
-def substep(d: Numbers, n: Places, s: Numbers, command: float, t: float, slot: int, w: Numbers) -> None:
-    """Move the arm on by t [s] under a held command; `slot` names the tabulated responses for exactly t."""
-    blocks = n[BLOCKS]
-    size, count = 2 * n[BLOCKS], n[BODIES] + n[POINTS]
-    trial, force = 0, size
+def substep_places(n: Places) -> SubstepScratch:
+    """Lay out the scratch of a substep."""
+    blocks, count = n[at.BLOCKS], n[at.BODIES] + n[at.POINTS]
+    size = 2 * blocks
+    force = size
     coefficients = force + 3 * size
     nodes = coefficients + 3 * count
     motion = nodes + 5 * count
     sizes = motion + 6 * count
-    found = found_at(sizes, blocks)
-    own = found + size
-    own_reach = own + 2 * RESPONSE * blocks
-    physical = own_reach + (12 * count * count if n[VARYING] else 0)
-    shift = (2 * n[BODIES] + n[POINTS]) * 3 * count
+    copy = sizes + size
+    found = copy + copy_size(blocks)
+    responses = found + size
+    influence = responses + 2 * RESPONSE * blocks
+    physical = influence + (12 * count * count if n[at.VARYING] else 0)
+    return SubstepScratch(0, force, coefficients, nodes, motion, sizes, copy, found, responses, influence, physical)
+
+
+@njit(forceinline=True)
+def apply_event(a: Arrays, event: Event, command: float, places: SubstepScratch) -> None:
+    """Let an event take place."""
+    d, n, s, w = a.d, a.n, a.s, a.w
+    mode, physical = int(s[at.MODE]), places.physical
+    if event.kind == AGAIN:
+        return
+    if event.kind != GEARS:
+        decide_stick_or_slip(a, int(event.which), command, physical, places.coefficients)
+        return
+    to_physical(d, n, s, mode, w, physical)
+    if mode & GEAR_OPEN:
+        s[at.GEAR_SIDE] = event.which
+        enter_mode(d, n, s, mode & ~GEAR_OPEN, w, physical)
+    else:
+        s[at.GEAR_SIDE] = 0.0
+        enter_mode(d, n, s, mode | GEAR_OPEN, w, physical)
+
+
+@njit(forceinline=True)
+def oppose_motion(d: Numbers, n: Places, s: Numbers, mode: int) -> None:
+    """Let friction oppose the motion of a state that was set or corrected from outside."""
+    size = 2 * n[at.BLOCKS]
+    for body in range(n[at.BODIES]):
+        if not is_stuck(mode, body):
+            speed = dot(d, record(n, mode) + n[at.SPEED] + body * size, s, at.HEADER, size)
+            if speed * s[at.HUB_DIRECTION + body] < 0.0:
+                s[at.HUB_DIRECTION + body] *= -1.0
+
+
+@njit(forceinline=True)
+def find_forces(a: Arrays, command: float, t: float, slot: int, places: SubstepScratch) -> Segment:
+    """Write the forces on the blocks over t [s]; return the blocks' responses after it.
+
+    `slot` names the tables for exactly t, if it is not UNTABULATED.
+    """
+    d, n, w = a.d, a.n, a.w
+    mode, blocks, known = int(a.s[at.MODE]), n[at.BLOCKS], slot >= 0
+    here = record(n, mode)
+    c0, c1 = here + n[at.C0], here + n[at.C1]
+    middle = Segment(d if known else w, here + n[at.RESPONSES] + slot * 2 * RESPONSE * blocks if known else places.responses)
+    end = Segment(middle.data, middle.first + RESPONSE * blocks)
+    if not known:
+        respond(d, c0, c1, blocks, t, w, end.first)
+    if not n[at.VARYING]:
+        constant_forcing(a, command, mode, places.force)
+        evaluate_forces(a, mode, mode, places.coefficients)
+        add_forces(d, n, mode, w, places.coefficients, places.force)
+        return end
+    size = (2 * n[at.BODIES] + n[at.POINTS]) * 3 * (n[at.BODIES] + n[at.POINTS])
+    shifts = Segment(middle.data, here + n[at.STEP_TABLES] + slot * 2 * size if known else places.influence)
+    if not known:
+        respond(d, c0, c1, blocks, 0.5 * t, w, middle.first)
+        force_influence(d, n, mode, middle, shifts)
+        force_influence(d, n, mode, end, Segment(w, shifts.first + size))
+    fit_forces(a, command, t, middle, shifts, places)
+    return end
+
+
+@njit
+def substep(a: Arrays, command: float, t: float, slot: int) -> None:
+    """Move the arm on by t [s] under a held command; `slot` names the tabulated responses for exactly t."""
+    d, n, s, w = a.d, a.n, a.s, a.w
+    places = substep_places(n)
     left, blind = t, 0.0
-    face_motion(d, n, s, int(s[MODE]))
+    oppose_motion(d, n, s, int(s[at.MODE]))
     while left > 0.0:
-        mode = int(s[MODE])
-        here = record(n, mode)
-        c0, c1 = here + n[C0], here + n[C1]
-        known = slot >= 0 and blind == 0.0
-        table = d if known else w
-        middle = here + n[RESPONSES] + slot * 2 * RESPONSE * blocks if known else own
-        end = middle + RESPONSE * blocks
-        if not known:
-            respond(d, c0, c1, blocks, left, w, end)
-        if n[VARYING]:
-            shifts = here + n[REACH] + slot * 2 * shift if known else own_reach
-            if not known:
-                respond(d, c0, c1, blocks, 0.5 * left, w, middle)
-                reach(d, n, mode, w, middle, w, own_reach)
-                reach(d, n, mode, w, end, w, own_reach + shift)
-            collocate(d, n, s, mode, command, left, table, middle, table, shifts, w, trial, nodes, motion, force, coefficients)
-        else:
-            constant_forcing(d, n, s, command, mode, w, force)
-            evaluate_forces(d, n, s, mode, mode, w, coefficients)
-            add_forces(d, n, mode, w, coefficients, force)
-        advance(d, c0, c1, blocks, table, end, s, HEADER, w, force, n[VARYING], trial)
-        when, kind, which = next_event(d, n, s, mode, command, w, trial, force, coefficients, sizes, min(blind, left), left)
-        when = left if kind == NOTHING else when
+        table = find_forces(a, command, left, slot if blind == 0.0 else UNTABULATED, places)
+        here = record(n, int(s[at.MODE]))
+        blocks = Blocks(here + n[at.C0], here + n[at.C1], n[at.BLOCKS], n[at.VARYING])
+        advance(d, blocks, table, Segment(s, at.HEADER), w, places.force, places.trial)
+        event = next_event(a, command, places, min(blind, left), left)
+        nothing = event.kind == NOTHING
+        when = left if nothing else event.time
         if when > 0.0:
-            for i in range(size):
-                s[HEADER + i] = w[(trial if kind == NOTHING else found) + i]
-            s[TIME] += when
-        remember(d, n, s)
-        if kind == NOTHING:
+            for i in range(2 * n[at.BLOCKS]):
+                s[at.HEADER + i] = w[(places.trial if nothing else places.found) + i]
+            s[at.TIME] += when
+        remember_friction(d, n, s)
+        if nothing:
             return
-        happen(d, n, s, kind, which, command, w, physical, coefficients)
+        apply_event(a, event, command, places)
         left -= when
         blind = max(2.0 * blind, FIRST_BLIND_TIME)

@@ -41,7 +41,7 @@ def run(arm: Arm, law: Law, duration: float = DURATION, step: float = STEP) -> R
     per_strain = 1.0 / (arm.sensors["strain_base"]["gain"] * TABLE["N"])
     settings = np.array([per_strain, step, RUN_AWAY, layout.COMMAND, layout.MODE])
     count = player()(
-        kernel.measure, kernel.let_through, kernel.control_step, plant.constants, plant.layout, plant.state, plant.scratch,
+        kernel.measure, kernel.drive_output, kernel.control_step, plant.constants, plant.layout, plant.state, plant.scratch,
         numbers, past, settings, stride, out,
     )  # fmt: skip
     out = out[:count]

@@ -88,14 +88,14 @@ def player() -> Callable[..., int]:
 
 
 def play(
-    measure: Any, let_through: Any, control_step: Any, d: Any, n: Any, s: Any, w: Any, numbers: Any, past: Any, settings: Any,
+    measure: Any, drive_output: Any, control_step: Any, d: Any, n: Any, s: Any, w: Any, numbers: Any, past: Any, settings: Any,
     stride: Any, out: Any,
 ) -> Any:  # fmt: skip
     """Fill out (samples, signals + 2) with readings, current and stuck flag; return the number of samples filled.
 
     Args:
-        measure: of the plant's kernel, as are let_through and control_step.
-        let_through: see above.
+        measure: of the plant's kernel, as are drive_output and control_step.
+        drive_output: see above.
         control_step: see above.
         d: the plant's constants.
         n: offsets in its arrays.
@@ -122,5 +122,5 @@ def play(
             out[k // stride, last] = amps
             out[k // stride, last + 1] = int(s[mode]) & 1
         before = s[command]
-        control_step(d, n, s, before, let_through(d, n, s, amps), w)
+        control_step(d, n, s, before, drive_output(d, n, s, amps), w)
     return out.shape[0]

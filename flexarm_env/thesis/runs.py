@@ -130,7 +130,7 @@ def run(
         command[k] = min(max(wanted, -limit), limit)
         waiting.append(command[k])
         before = s[layout.COMMAND]
-        kernel.control_step(d, n, s, before, kernel.let_through(d, n, s, waiting.popleft()), w)
+        kernel.control_step(d, n, s, before, kernel.drive_output(d, n, s, waiting.popleft()), w)
         if not abs(truth[k, 1]) < RUN_AWAY:
             truth, command, stuck, target = truth[:k], command[:k], stuck[:k], target[:k]
             break

@@ -59,7 +59,7 @@ def close(arm, controller, targets, noise=True, seed=0, feed=None):
         commands[k] = controller.clipped(controller.act(np.append(readings, target)) + (0.0 if feed is None else feed[k]))
         waiting.append(commands[k])
         before = s[layout.COMMAND]
-        kernel.control_step(d, n, s, before, kernel.let_through(d, n, s, waiting.popleft()), w)
+        kernel.control_step(d, n, s, before, kernel.drive_output(d, n, s, waiting.popleft()), w)
     return Run(truth, commands, np.asarray(targets))
 
 

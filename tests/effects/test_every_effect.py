@@ -20,12 +20,12 @@ import pytest
 
 from flexarm_env.arm import Arm
 from flexarm_env.effects import Effect, catalogue
-from flexarm_env.effects.base import PORT_ARGUMENTS
 from flexarm_env.effects.catalogue import LAW_PORTS, load_effect
 from flexarm_env.errors import InputError
 from flexarm_env.experiments.simulate import simulate
 from flexarm_env.parameters import INPUTS, NEEDS
 from flexarm_env.plant.compose import compose
+from flexarm_env.plant.ports import PORT_ARGUMENTS
 from flexarm_env.sensors import known_sensors
 from flexarm_env.units import factor
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flexarm_env import Arm
-from flexarm_env.plant.tables import RAMP_PARTS
+from flexarm_env.plant.flat_arrays import RAMP_PARTS
 
 INTERVAL, FINE = 0.002, 400
 #: A step each way, [A], and when the second comes, [s].

@@ -65,7 +65,7 @@ def test_fitted_forces_converge(name):
 def test_short_cut_agrees_with_the_long_way(name):
     current = np.concatenate([pulse(200), noise(2, 50)])
     plant, slow = thesis_plant(**ARMS[name]), thesis_plant(**ARMS[name])
-    slow.layout[at.GLIDES] = 0
+    slow.layout[at.STEADY_BODIES] = 0
     assert relative(plant.replay(current), slow.replay(current)) < 1e-9
 
 

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.beam import Matrix, spread_out, turned
+from flexarm_env.plant.event_free_table import DEPTH, table_size
 from flexarm_env.plant.modal import Mode, complete, mode_of
-from flexarm_env.plant.slide_table import DEPTH, table_size
 from flexarm_env.plant.structure import DRIVERS, HUB_TORQUE, MOTOR_TORQUE, LinearModel, Structure, exceeds
 
 RESPONSE = 5
@@ -82,12 +82,12 @@ def pack(
     n[at.BODIES], n[at.COORDINATES], n[at.POINTS] = bodies, len(model.names), len(points)
     n[at.COUPLED] = bodies == 2 or np.any(np.not_equal(structure.hub_stiffness, 0.0))
     n[at.VARYING] = varying
-    n[at.GLIDES] = 0 if varying else bodies
+    n[at.STEADY_BODIES] = 0 if varying else bodies
     n[at.BLOCKS] = blocks
     n[at.SIGNALS], n[at.STATES], n[at.DRIVERS] = len(model.signals), modes[0].physical.shape[-2], len(DRIVERS)
     n[at.MODES] = at.CONSTANTS
-    reach = _size_of_tables(n)
-    records = [_record(structure, model, mode, which, points, blocks, reach) for which, mode in enumerate(modes)]
+    step_tables = _size_of_tables(n)
+    records = [_record(structure, model, mode, which, points, blocks, step_tables) for which, mode in enumerate(modes)]
     place = 0
     for key, value in records[0].items():
         n[key] = place
@@ -145,7 +145,7 @@ def split_delay(delay: ArrayLike, interval: float) -> tuple[int, Matrix]:
 
 
 def _record(
-    structure: Structure, model: LinearModel, mode: Mode, which: int, points: NDArray[np.intp], blocks: int, reach: int
+    structure: Structure, model: LinearModel, mode: Mode, which: int, points: NDArray[np.intp], blocks: int, step_tables: int
 ) -> dict[int, Matrix]:
     size, bodies = len(model.names), 2 if structure.separate_motor else 1
     torques = [HUB_TORQUE, MOTOR_TORQUE][:bodies]
@@ -163,8 +163,8 @@ def _record(
         at.C0: c0,
         at.C1: c1,
         at.RESPONSES: np.zeros((*arms, 4 * blocks * RESPONSE)),
-        at.GLIDE: np.zeros((*arms, 2 * blocks * at.GLIDE_SIZE)),
-        at.REACH: np.zeros((*arms, reach)),
+        at.QUIET_TABLE: np.zeros((*arms, 2 * blocks * at.QUIET_SIZE)),
+        at.STEP_TABLES: np.zeros((*arms, step_tables)),
         at.PHYSICAL: physical,
         at.MODAL: turned(_wide(turned(mode.modal), blocks)),
         at.FORCING: turned(_wide(turned(mode.forcing), blocks)),

@@ -1,0 +1,179 @@
+"""A step without events of any arm without drag: two bodies, gears, and forces that vary with the motion."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from numba import njit
+
+from flexarm_env.plant import layout as at
+from flexarm_env.plant.bundles import Arrays, Numbers
+from flexarm_env.plant.event_free_table import ORDER, PER_BLOCK, StepTable, tested_row
+from flexarm_env.plant.force_quartic import StepScratch, fit_quartic, step_places, variation
+from flexarm_env.plant.propagate import dot
+from flexarm_env.plant.stick_slip import (
+    GEAR_OPEN,
+    apply_laws,
+    has_friction,
+    is_stuck,
+    load_now,
+    preslides,
+    record,
+    remember_friction,
+    static_budget,
+)
+
+#: Speed [rad/s] below which it does not matter to friction that yields when it turns round.
+QUIET = 1e-4
+
+
+class Chord(NamedTuple):
+    """A tested row before and after a step, and how far it may stray from the line between the two."""
+
+    before: float
+    after: float
+    bend: float
+
+
+@njit(forceinline=True)
+def start_forces(a: Arrays, places: StepScratch) -> bool:
+    """Write the motion at the start, if any law asks, and the forces; return False if a body turns against its direction."""
+    d, n, s, w = a.d, a.n, a.s, a.w
+    mode, bodies, size = int(s[at.MODE]), n[at.BODIES], 2 * n[at.BLOCKS]
+    here, start, varying = record(n, mode), places.start, n[at.VARYING] > 0
+    for body in range(bodies if varying else 0):
+        w[start + body] = dot(d, here + n[at.ANGLE] + body * size, s, at.HEADER, size)
+        w[start + body] += d[here + n[at.HOLDS_ANGLE] + body] * s[at.HELD_HUB + body]
+        w[start + bodies + body] = dot(d, here + n[at.SPEED] + body * size, s, at.HEADER, size)
+        turns = has_friction(d, n, body) and not is_stuck(mode, body)
+        if turns and w[start + bodies + body] * s[at.HUB_DIRECTION + body] <= (-QUIET if preslides(n, body) else 0.0):
+            return False
+    if not varying:
+        for i in range(2 * bodies):
+            w[start + i] = 0.0
+    apply_laws(a, mode, s[at.TIME], start, places.forces)
+    return True
+
+
+@njit(forceinline=True)
+def write_inputs(a: Arrays, command: float, places: StepScratch) -> None:
+    """Write the drivers: the command, the forces at the start, the constant 1, the gears' side and the held angles."""
+    s, w, inputs = a.s, a.w, places.inputs
+    w[inputs + at.W_COMMAND], w[inputs + at.W_ONE], w[inputs + at.W_SIDE] = command, 1.0, s[at.GEAR_SIDE]
+    w[inputs + at.W_HUB] = w[places.forces]
+    w[inputs + at.W_MOTOR] = w[places.forces + 1] if a.n[at.BODIES] == 2 else 0.0
+    w[inputs + at.W_HELD_HUB], w[inputs + at.W_HELD_MOTOR] = s[at.HELD_HUB], s[at.HELD_MOTOR]
+
+
+@njit(forceinline=True)
+def forcing_of(d: Numbers, row: int, w: Numbers, inputs: int, coupled: bool) -> float:
+    """Return the force on one coordinate of a block, from the drivers."""
+    force = d[row + at.W_COMMAND] * w[inputs + at.W_COMMAND] + d[row + at.W_HUB] * w[inputs + at.W_HUB] + d[row + at.W_ONE]
+    if coupled:
+        force += d[row + at.W_MOTOR] * w[inputs + at.W_MOTOR] + d[row + at.W_SIDE] * w[inputs + at.W_SIDE]
+        force += d[row + at.W_HELD_HUB] * w[inputs + at.W_HELD_HUB] + d[row + at.W_HELD_MOTOR] * w[inputs + at.W_HELD_MOTOR]
+    return force
+
+
+@njit(forceinline=True)
+def move_blocks(a: Arrays, moves: bool, table: StepTable, places: StepScratch) -> None:
+    """Write where each block gets to by the end of the step, and how far it strays from its chord, to w."""
+    d, n, s, w, tab = a.d, a.n, a.s, a.w, table.data
+    here, drivers, changes = record(n, int(s[at.MODE])), n[at.DRIVERS], n[at.BODIES] * ORDER
+    coupled = n[at.COUPLED] > 0
+    for k in range(n[at.BLOCKS]):
+        row = here + n[at.FORCING] + 2 * k * drivers
+        f1 = forcing_of(d, row, w, places.inputs, coupled)
+        f2 = forcing_of(d, row + drivers, w, places.inputs, coupled)
+        c0, c1 = d[here + n[at.C0] + k], d[here + n[at.C1] + k]
+        i = table.responses + PER_BLOCK * k
+        c, r, r0 = tab[i], tab[i + 1], tab[i + 2]
+        p, q = s[at.HEADER + 2 * k], s[at.HEADER + 2 * k + 1]
+        x, y = q + f1, f2 - c0 * p - c1 * q
+        new_p = p + (r + c1 * r0) * x + r0 * y
+        new_q = c * x + r * y - f1
+        if moves:
+            end = table.ends + 2 * k * changes
+            for j in range(changes):
+                new_p += tab[end + 2 * j] * w[places.changes + j]
+                new_q += tab[end + 2 * j + 1] * w[places.changes + j]
+        w[2 * k], w[2 * k + 1] = new_p, new_q
+        w[places.bends + k] = tab[i + 3] * math.sqrt(c0 * x * x + y * y)
+
+
+@njit(forceinline=True)
+def chord_of(a: Arrays, row: int, places: StepScratch) -> Chord:
+    """Return the chord of the row that tells of a body's event, or (last) of the gears'."""
+    d, s, w = a.d, a.s, a.w
+    place, weight = tested_row(a.n, int(s[at.MODE]), row)
+    before, after, bend = 0.0, 0.0, 0.0
+    for k in range(a.n[at.BLOCKS]):
+        i = 2 * k
+        before += d[place + i] * s[at.HEADER + i] + d[place + i + 1] * s[at.HEADER + i + 1]
+        after += d[place + i] * w[i] + d[place + i + 1] * w[i + 1]
+        bend += d[weight + k] * w[places.bends + k]
+    return Chord(before, after, bend)
+
+
+@njit(forceinline=True)
+def body_keeps_state(a: Arrays, body: int, moves: bool, table: StepTable, places: StepScratch) -> bool:
+    """Whether a body surely goes on turning or being held over the step."""
+    d, n, s, w = a.d, a.n, a.s, a.w
+    if not has_friction(d, n, body):
+        return True
+    chord = chord_of(a, body, places)
+    before, after, bend = chord.before, chord.after, chord.bend
+    if preslides(n, body) and max(abs(before), abs(after)) + bend < QUIET:
+        return True
+    mode, bodies = int(s[at.MODE]), n[at.BODIES]
+    here, stuck = record(n, mode), is_stuck(mode, body)
+    for other in range(bodies if moves else 0):
+        turned = variation(w, places.changes + other * ORDER)
+        bend += table.data[table.bends + body * bodies + other] * turned
+        if stuck:
+            bend += abs(d[here + n[at.HOLD_FORCES] + body * bodies + other]) * turned
+    if not stuck:
+        return min(before * s[at.HUB_DIRECTION + body], after * s[at.HUB_DIRECTION + body]) > bend
+    offset = dot(d, here + n[at.HOLD_DRIVERS] + body * n[at.DRIVERS], w, places.inputs, n[at.DRIVERS])
+    angle, load = s[at.HELD_HUB + body], load_now(d, n, s, mode)
+    high, low = static_budget(d, n, s, body, 1.0, angle, load), static_budget(d, n, s, body, -1.0, angle, load)
+    return max(before, after) + offset + bend < high and min(before, after) + offset - bend > -low
+
+
+@njit(forceinline=True)
+def gears_keep_touching(a: Arrays, moves: bool, table: StepTable, places: StepScratch) -> bool:
+    """Whether gears with play surely go on touching over the step."""
+    s, bodies, side = a.s, a.n[at.BODIES], a.s[at.GEAR_SIDE]
+    chord = chord_of(a, bodies, places)
+    held, bend = s[at.HELD_MOTOR] - s[at.HELD_HUB], chord.bend  # held angles of free bodies are 0
+    for body in range(bodies if moves else 0):
+        bend += table.data[table.bends + 2 * bodies + body] * variation(a.w, places.changes + body * ORDER)
+    return not min(side * (chord.before + held), side * (chord.after + held)) - 0.5 * a.d[at.GAP] <= bend
+
+
+@njit
+def event_free_step(a: Arrays, command: float, length: float, last: bool, table: StepTable) -> bool:
+    """Move the arm on by a step with a table and return True, if it is sure that no event falls in it.
+
+    `last` says that the step cannot be halved.
+    """
+    d, n, s, w = a.d, a.n, a.s, a.w
+    mode, places = int(s[at.MODE]), step_places(n)
+    if mode >= GEAR_OPEN or not start_forces(a, places):
+        return False
+    write_inputs(a, command, places)
+    moves = n[at.VARYING] > 0 and (mode != (1 << n[at.BODIES]) - 1 or n[n[at.TORQUE_LAWS]] > 0)
+    if moves and not (fit_quartic(a, length, last, table, places) or last):
+        return False
+    move_blocks(a, moves, table, places)
+    for body in range(n[at.BODIES]):
+        if not body_keeps_state(a, body, moves, table, places):
+            return False
+    if d[at.GAP] > 0.0 and not gears_keep_touching(a, moves, table, places):
+        return False
+    for i in range(2 * n[at.BLOCKS]):
+        s[at.HEADER + i] = w[i]
+    s[at.TIME] += length
+    remember_friction(d, n, s)
+    return True

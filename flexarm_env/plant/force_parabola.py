@@ -1,0 +1,149 @@
+"""Forces that vary with the motion within a step: fitted by parabolas in time (exponential collocation)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from numba import njit
+
+from flexarm_env.plant import layout as at
+from flexarm_env.plant.bundles import Arrays, Blocks, Numbers, Places, Segment, SubstepScratch
+from flexarm_env.plant.propagate import RESPONSE, advance
+from flexarm_env.plant.stick_slip import apply_laws, evaluate_forces, read_motion, record
+
+SWEEPS = 15
+
+
+@njit(forceinline=True)
+def constant_forcing(a: Arrays, command: float, mode: int, force: int) -> None:
+    """Write what stays over the substep: command, constant torque, gears' side, held angles; nothing changes in time."""
+    d, n, s, w = a.d, a.n, a.s, a.w
+    row = record(n, mode) + n[at.FORCING]
+    for i in range(2 * n[at.BLOCKS]):
+        total = d[row + at.W_COMMAND] * command + d[row + at.W_ONE]
+        if n[at.COUPLED]:
+            total += d[row + at.W_SIDE] * s[at.GEAR_SIDE]
+            total += d[row + at.W_HELD_HUB] * s[at.HELD_HUB] + d[row + at.W_HELD_MOTOR] * s[at.HELD_MOTOR]
+        w[force + i] = total
+        w[force + i + 2 * n[at.BLOCKS]] = w[force + i + 4 * n[at.BLOCKS]] = 0.0
+        row += n[at.DRIVERS]
+
+
+@njit(forceinline=True)
+def add_forces(d: Numbers, n: Places, mode: int, w: Numbers, coefficients: int, force: int) -> None:
+    """Add torque and drag, coefficients of 1, t, t²/2, to the force on the blocks."""
+    count, size = n[at.BODIES] + n[at.POINTS], 2 * n[at.BLOCKS]
+    for order in range(3 if n[at.VARYING] else 1):
+        column = record(n, mode) + n[at.FORCE_COLUMNS]
+        for j in range(count):
+            c = w[coefficients + order * count + j]
+            for i in range(size):
+                w[force + order * size + i] += d[column + i] * c
+            column += size
+
+
+class Answer(NamedTuple):
+    """What a force on a block is looked at by: a quantity u p + v P of the block, with the block's c₀ and c₁."""
+
+    u: float
+    v: float
+    c0: float
+    c1: float
+
+
+class Columns(NamedTuple):
+    """Columns in d: the place of the first, how far each is from the next, how many there are."""
+
+    first: int
+    step: int
+    number: int
+
+
+@njit
+def add_influence(d: Numbers, answer: Answer, table: Segment, columns: Columns, to: Segment) -> None:
+    """Add how far forces 1, t, t²/2 along each column move a quantity of one block, by the time of the table."""
+    u, v, c0, c1 = answer.u, answer.v, answer.c0, answer.c1
+    out = to.first
+    for order in range(3):
+        i = table.first + order
+        faster, slower = table.data[i + 1], table.data[i + 2]  # S and R₀, R₀ and R₁, or R₁ and R₂
+        by_first = u * (faster + c1 * slower) - v * c0 * slower
+        by_second = u * slower + v * faster
+        for j in range(columns.number):
+            column = columns.first + j * columns.step
+            to.data[out + j] += by_first * d[column] + by_second * d[column + 1]
+        out += columns.number
+
+
+@njit
+def force_influence(d: Numbers, n: Places, mode: int, table: Segment, to: Segment) -> None:
+    """Write how each force (order by order) moves each quantity of read_motion, by the time of the table."""
+    here, size = record(n, mode), 2 * n[at.BLOCKS]
+    bodies, count = n[at.BODIES], n[at.BODIES] + n[at.POINTS]
+    out = to.first
+    for i in range(2 * bodies + n[at.POINTS]):
+        row = here + n[at.DRAG_VELOCITY] + (i - 2 * bodies) * size
+        if i < bodies:
+            row = here + n[at.ANGLE] + i * size
+        elif i < 2 * bodies:
+            row = here + n[at.SPEED] + (i - bodies) * size
+        for j in range(3 * count):
+            to.data[out + j] = 0.0
+        for k in range(n[at.BLOCKS]):
+            answer = Answer(d[row + 2 * k], d[row + 2 * k + 1], d[here + n[at.C0] + k], d[here + n[at.C1] + k])
+            columns = Columns(here + n[at.FORCE_COLUMNS] + 2 * k, size, count)
+            add_influence(d, answer, Segment(table.data, table.first + RESPONSE * k), columns, Segment(to.data, out))
+        out += 3 * count
+
+
+@njit
+def fit_parabola(w: Numbers, start: int, middle: int, end: int, count: int, t: float, out: int) -> None:
+    """Write coefficients of 1, t, t²/2 of the parabolas through values at the start, middle and end of t."""
+    for j in range(count):
+        a, b, c = w[start + j], w[middle + j], w[end + j]
+        w[out + j] = a
+        w[out + count + j] = (4.0 * b - 3.0 * a - c) / t
+        w[out + 2 * count + j] = 4.0 * (a - 2.0 * b + c) / (t * t)
+
+
+@njit
+def fit_forces(a: Arrays, command: float, t: float, table: Segment, shifts: Segment, places: SubstepScratch) -> None:
+    """Find the force over t as the parabola through its values at start, middle and end of the motion it causes.
+
+    Order four in t, solved by sweeps over the few quantities that the laws ask for: without the laws' forces they
+    move as `table` says, and by each force as `shifts` says, both for the middle, then the end (exponential collocation
+    on Lobatto points: Hochbruck and Ostermann, Exponential integrators, Acta Numerica 2010, section 2.2).
+    """
+    d, n, s, w = a.d, a.n, a.s, a.w
+    mode = int(s[at.MODE])
+    here = record(n, mode)
+    blocks, count, quantities = n[at.BLOCKS], n[at.BODIES] + n[at.POINTS], 2 * n[at.BODIES] + n[at.POINTS]
+    nodes, motion, coefficients = places.nodes, places.motion, places.coefficients
+    new, free = nodes + 3 * count, motion + quantities
+    evaluate_forces(a, mode, mode, nodes)
+    constant_forcing(a, command, mode, places.force)
+    steady, state = Blocks(here + n[at.C0], here + n[at.C1], blocks, 0), Segment(s, at.HEADER)
+    for half in range(2):
+        advance(d, steady, Segment(table.data, table.first + half * RESPONSE * blocks), state, w, places.force, places.trial)
+        read_motion(a, mode, Segment(w, places.trial), free + half * quantities)
+    for j in range(count):
+        w[nodes + count + j] = w[nodes + 2 * count + j] = w[nodes + j]
+    before = 1.0
+    for _ in range(SWEEPS):
+        fit_parabola(w, nodes, nodes + count, nodes + 2 * count, count, t, coefficients)
+        change = 0.0
+        for half in range(2):
+            for i in range(quantities):
+                total, row = w[free + half * quantities + i], shifts.first + (half * quantities + i) * 3 * count
+                for j in range(3 * count):
+                    total += shifts.data[row + j] * w[coefficients + j]
+                w[motion + i] = total
+            apply_laws(a, mode, s[at.TIME] + 0.5 * (half + 1) * t, motion, new + half * count)
+        for j in range(2 * count):
+            change = max(change, abs(w[new + j] - w[nodes + count + j]))
+            w[nodes + count + j] = w[new + j]
+        if change * min(change / before, 1.0) < d[at.TOLERANCE]:  # what further sweeps would change
+            break
+        before = change
+    fit_parabola(w, nodes, nodes + count, nodes + 2 * count, count, t, coefficients)
+    add_forces(d, n, mode, w, coefficients, places.force)
