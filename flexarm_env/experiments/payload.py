@@ -1,4 +1,4 @@
-"""The load that a recording says the arm carried: a mass at the tip, known, beside whatever the arm has there."""
+"""The known payload of a recording: a mass at the tip, besides the masses that the arm has there."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from flexarm_env.recordings.recording import Recording
 
 
 def payload_of(recording: Recording) -> float:
-    """Return the payload that a recording states [kg], 0 if none."""
+    """Read the payload of a recording [kg] from its conditions, 0 if none."""
     return recording.conditions.get("payload", 0.0)
 
 
@@ -30,7 +30,7 @@ def check_load(arm: Arm, recording: Recording) -> None:
 
 
 def loaded(arm: Arm, payload: float) -> Arm:
-    """Return the arm with a payload [kg] at its tip, beside a tip mass and a payload of its own."""
+    """Add a payload [kg] to the tip of an arm, besides a tip mass and a payload of its own."""
     if payload == 0.0:
         return arm
     own = arm.effects["payload"]["mass"] if "payload" in arm.effects else 0.0
@@ -38,5 +38,5 @@ def loaded(arm: Arm, payload: float) -> Arm:
 
 
 def loaded_plants(arm: Arm, payloads: Iterable[float], interval: float) -> dict[float, Plant]:
-    """Return a plant of the arm, sampled every `interval` [s], for each payload [kg]."""
+    """Build a plant of the arm, sampled every `interval` [s], for each payload [kg]."""
     return {payload: loaded(arm, payload).plant(interval) for payload in dict.fromkeys(payloads)}

@@ -11,7 +11,8 @@ from flexarm_env.effects import Catalogue, catalogue
 from flexarm_env.effects.catalogue import load_effect
 from flexarm_env.errors import InputError
 from flexarm_env.recordings.arm_columns import layout_of
-from flexarm_env.recordings.columns import CALIBRATED, load_columns
+from flexarm_env.recordings.column_maps import load_columns
+from flexarm_env.recordings.columns import CALIBRATED
 from flexarm_env.recordings.files import files_of
 from flexarm_env.recordings.recording import Recording, with_distinct_names
 
