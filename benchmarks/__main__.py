@@ -1,4 +1,4 @@
-"""Measure speed and accuracy and say which goals are met; whatever the figures, it ends with 0."""
+"""Measure speed and accuracy and compare them with their goals; the exit code is 0 for any figures."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-# The matrices are small: threads inside BLAS cost more than they bring, to the peers as well.
+# The matrices are small: threads inside BLAS cost more than they save, for the peers as well.
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
@@ -20,7 +20,7 @@ OUTPUT = Path(__file__).resolve().parent.parent / "results" / "bench" / "bench.j
 
 
 def main() -> None:
-    """Run the parts that are asked for, all by default."""
+    """Run the requested parts, all by default."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     for name, part in PARTS.items():
         parser.add_argument(f"--{name}", action="store_true", help=f"only: {part.__doc__}")

@@ -1,4 +1,4 @@
-"""How long the shipped recordings take to diagnose."""
+"""Time of a diagnosis of the shipped recordings."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexarm_env.demo.story import ARM, JOBS
 
 
 def measure(say: Callable[[str], None]) -> dict[str, Any]:
-    """Time one diagnosis, from recordings that have been read to the verdict."""
+    """Time one diagnosis, from recordings in memory to the verdict."""
     say(f"diagnosis of the shipped recordings on {JOBS} cores, one to three minutes")
     recordings = Recording.read_all(Path(flexarm_env.demo.__file__).parent)
     arm = Arm.load(ARM)

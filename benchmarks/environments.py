@@ -1,4 +1,4 @@
-"""Steps per second of the environments, beside Gymnasium's Pendulum, EnvPool's, MuJoCo's arm and what PPO needs."""
+"""Steps per second of the environments, beside Gymnasium's Pendulum, EnvPool's, MuJoCo's arm and the rate of PPO."""
 
 from __future__ import annotations
 
@@ -33,19 +33,19 @@ PPO_STEPS, PPO_UPDATES, PPO_BATCH, PPO_EPOCHS = 64, 3, 4096, 10
 
 
 def smooth(steps: int, arms: int) -> Floats:
-    """Actions (steps, arms, 1): a sine of another phase for each arm."""
+    """Build actions (steps, arms, 1): a sine with its own phase for each arm."""
     phases = np.random.default_rng(1).uniform(0.0, 2.0 * np.pi, arms)
     angle = 2.0 * np.pi * FREQUENCY / RATE * np.arange(steps)[:, None] + phases
     return (AMPLITUDE * np.sin(angle)).astype(np.float32)[:, :, None]
 
 
 def white(steps: int, arms: int) -> Floats:
-    """Actions (steps, arms, 1): each uniform over the whole range, which no drive or policy asks for."""
+    """Draw actions (steps, arms, 1), each uniform over the whole range: the worst case, beyond any policy."""
     return np.random.default_rng(2).uniform(-1.0, 1.0, (steps, arms, 1)).astype(np.float32)
 
 
 def in_turns(works: dict[str, Callable[[], object]], rounds: int) -> dict[str, list[float]]:
-    """Times [s] of some pieces of work, in turns so that all meet the same machine; the first turn does not count."""
+    """Time pieces of work [s] in turns, under the same load of the machine; the first turn does not count."""
     times: dict[str, list[float]] = {name: [] for name in works}
     for turn in range(rounds + 1):
         for name, work in works.items():
@@ -57,12 +57,12 @@ def in_turns(works: dict[str, Callable[[], object]], rounds: int) -> dict[str, l
 
 
 def ratio(slow: list[float], fast: list[float]) -> tuple[float, float]:
-    """How many times faster by the best of each, and by the median of the pairs."""
+    """Compute the speed-up by the best of each, and by the median of the pairs."""
     return min(slow) / min(fast), float(np.median(np.array(slow) / np.array(fast)))
 
 
 def one_episode_after_another(id: str, scale: float) -> Callable[[], None]:
-    """Steps of a single environment, with a reset where an episode ends."""
+    """Prepare steps of a single environment, with a reset at the end of each episode."""
     env = gym.make(id)
     env.reset(seed=0)
     actions = list(scale * smooth(2 * EPISODE, 1)[:, 0])
@@ -77,7 +77,7 @@ def one_episode_after_another(id: str, scale: float) -> Callable[[], None]:
 
 
 def all_steps(envs: Any, actions: Floats) -> Callable[[], None]:
-    """Steps of a batch, which starts episodes anew where they end."""
+    """Prepare steps of a batch with automatic resets."""
     envs.reset()
 
     def work() -> None:
@@ -88,12 +88,12 @@ def all_steps(envs: Any, actions: Floats) -> Callable[[], None]:
 
 
 def batch(actions: Floats, threads: int = 1) -> Callable[[], None]:
-    """Steps of our batch, sensors' noise and infos included."""
+    """Prepare steps of FlexArm's batch, with sensor noise and infos."""
     return all_steps(gym.make_vec(ID, ARMS, vectorization_mode="vector_entry_point", threads=threads), actions)
 
 
 def measure(say: Say) -> dict[str, Any]:
-    """Measure all of it; figures by name."""
+    """Measure all figures, by name."""
     found: dict[str, Any] = {"environments_load_before": os.getloadavg()[0]}
     for part in (_single, _batch, _mujoco, _threads, _ppo):
         found |= part(say)
@@ -146,7 +146,7 @@ def _mujoco(say: Say) -> dict[str, Any]:
 
 
 def hashes(threads: int) -> Callable[[], None]:
-    """Work that needs nothing but as many cores: it shows how many of them are ours."""
+    """Prepare purely parallel work, which measures the share of the cores that is free."""
     block = bytes(40_000_000)
 
     def work() -> None:

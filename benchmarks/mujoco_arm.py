@@ -22,12 +22,12 @@ PUSH, HELD = 0.7, 5.0
 
 
 def installed() -> bool:
-    """Whether MuJoCo is there."""
+    """Whether MuJoCo is installed."""
     return find_spec("mujoco") is not None
 
 
 def mjcf(arm: Arm, friction: dict[str, str]) -> str:
-    """The arm as MJCF; a segment's spring is the bending stiffness over its length, over half of it at the hub."""
+    """Write the arm as MJCF; a segment's spring is the bending stiffness over its length, over half of it at the hub."""
     beam, drive = arm.constants["beam"], arm.constants["drive"]
     h = beam["length"] / SEGMENTS
     mass = beam["mass_per_length"] * h
@@ -54,7 +54,7 @@ def mjcf(arm: Arm, friction: dict[str, str]) -> str:
 
 
 class Rollouts:
-    """Many arms at rest, moved on by mujoco.rollout on one thread."""
+    """Many arms at rest, integrated by mujoco.rollout on one thread."""
 
     def __init__(self, arm: Arm, count: int, friction: dict[str, str] | None = None) -> None:
         import mujoco
@@ -68,12 +68,12 @@ class Rollouts:
         self.start = np.tile(start, (count, 1))
 
     def roll(self, commands: Array) -> Array:
-        """Return readings (arms, steps, sensors) under commands (arms, steps) [A]."""
+        """Simulate readings (arms, steps, sensors) under commands (arms, steps) [A]."""
         _, readings = self.run(self.model, self.data, self.start, commands[:, :, None])
         return readings
 
     def creep(self) -> float:
-        """Angle [rad] by which a push that friction holds moves the hub on, from when the arm has settled."""
+        """Measure the angle [rad] by which a push below static friction moves the settled hub."""
         drive = self.arm.constants["drive"]
         push = PUSH * self.arm.effects["coulomb"]["torque"] / (drive["gear_ratio"] * drive["torque_constant"])
         angle = self.roll(np.full((len(self.start), round(2 * HELD / STEP)), push))[0, :, 0]

@@ -1,6 +1,6 @@
-"""The same arm as a user would write it for other solvers: own matrices in absolute coordinates, numpy, scipy.
+"""The same arm as a user would write it for other solvers: separate matrices in absolute coordinates, numpy, scipy.
 
-Nothing here comes from the package but the numbers in the arm file: the solutions are independent of the plant's.
+Only the numbers of the arm file come from the package: the solutions are independent of the plant's.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from scipy.integrate import solve_ivp
 Array = NDArray[np.float64]
 Values = Mapping[str, Mapping[str, float]]
 
-#: Width [rad/s] of the tanh in the place of the sign of the hub's speed, for solvers without events.
+#: Width [rad/s] of the tanh that replaces the sign of the hub's speed, for solvers without events.
 SMOOTH = 1e-3
 MOST_EVENTS = 2000
 
 
 @dataclass(frozen=True)
 class Friction:
-    """Dry friction and its variations: parameters of the effects of these names, zero where absent."""
+    """Dry friction and its variations: parameters of the effects of the same names, zero where absent."""
 
     coulomb: float = 0.0
     stiction: float = 0.0
@@ -36,12 +36,12 @@ class Friction:
     phase: float = 0.0
 
     def sliding(self, direction: float, speed: float, angle: float) -> float:
-        """Friction [Nm] that opposes motion in a direction (±1)."""
+        """Compute the friction [Nm] that opposes motion in a direction (±1)."""
         total = self.coulomb + direction * self.asymmetric + self.stribeck * math.exp(-((speed / self.falloff) ** 2))
         return max(total + self.amplitude * math.sin(self.cycles * angle + self.phase), 0.0)
 
     def static(self, direction: float, angle: float) -> float:
-        """Friction [Nm] that a hub at rest can give against a push in a direction: no less than once it slides."""
+        """Compute the largest friction [Nm] of a hub at rest against a push in a direction: at least that of sliding."""
         total = self.coulomb + self.stiction + self.stribeck
         total += self.amplitude * math.sin(self.cycles * angle + self.phase)
         return max(total, self.sliding(direction, 0.0, angle))
@@ -105,7 +105,7 @@ class Peer:
         return total
 
     def moment_row(self, x: float, constants: Values) -> Array:
-        """Row (size,) of the bending moment [Nm] at x [m]."""
+        """Build the row (size,) of the bending moment [Nm] at x [m]."""
         beam = constants["beam"]
         h = beam["length"] / self.n
         element = min(int(x / h), self.n - 1)
@@ -133,7 +133,7 @@ class Peer:
         return out
 
     def smooth(self, command: Array, interval: float, rtol: float) -> Array:
-        """Solve with LSODA and a tanh in the place of the sign; return states (samples, 2 · size + 1)."""
+        """Solve with LSODA and a tanh in place of the sign; return states (samples, 2 · size + 1)."""
         states = [np.zeros(2 * self.size + 1)]
         for start, stop in _pieces(command):
             times = interval * np.arange(start, stop + 1)
@@ -199,6 +199,6 @@ def _with(slope: Callable[..., Array], command: float, direction: float | None) 
 
 
 def _pieces(command: Array) -> list[tuple[int, int]]:
-    """Samples from which to which a command (samples,) stays; its last value acts on nothing."""
+    """Split a command (samples,) into stretches of constant value, first and last sample; its last value is not applied."""
     edges = [0, *(np.flatnonzero(np.diff(command[:-1])) + 1), len(command) - 1]
     return list(zip(map(int, edges[:-1]), map(int, edges[1:]), strict=True))

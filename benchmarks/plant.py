@@ -19,8 +19,8 @@ Array = NDArray[np.float64]
 
 INTERVAL = 0.005
 SECONDS = 5.0
-#: How often the pulse is repeated, from where the last one left the arm, in the run that shows how the cost depends on
-#: the motion: with six effects the arm then slides most of the time, which costs more than rest.
+#: Repetitions of the pulse, each from the state after the last, in the run on the dependence of cost on motion: with six
+#: effects the arm then slides most of the time, which costs more than rest.
 REPEATED = 10
 ROUNDS = 200
 FINER = (16, 32)
@@ -29,13 +29,13 @@ SIX = ("stribeck", "asymmetric_coulomb", "position_friction", "cable_stiffness",
 
 
 def pulse() -> Array:
-    """The thesis's pulse [A]: 3 A from 0.5 to 1.0 s."""
+    """Build the thesis's pulse [A]: 3 A from 0.5 to 1.0 s."""
     t = INTERVAL * (np.arange(round(SECONDS / INTERVAL) + 1) + 0.5)
     return np.where((t > 0.5) & (t < 1.0), 3.0, 0.0)
 
 
 def six_effects(elements: int = 4) -> Arm:
-    """The thesis's arm with four elements and six effects of typical size."""
+    """Build the thesis's arm with four elements and six effects of typical size."""
     arm = Arm.load("thesis").with_values({"beam.elements": elements, "drive.gear_stiffness": 0.0})
     for effect in SIX:
         arm = arm.with_effect(effect)
@@ -43,7 +43,7 @@ def six_effects(elements: int = 4) -> Arm:
 
 
 class Timed:
-    """A plant whose steps are timed; the shortest of some rounds counts: the machine is not ours alone."""
+    """A plant with timed steps; the shortest round counts, since other work on the machine only adds time."""
 
     def __init__(self, arm: Arm, repeated: int = 1) -> None:
         self.plant = arm.plant(INTERVAL)
@@ -59,24 +59,24 @@ class Timed:
 
     @property
     def nanoseconds(self) -> float:
-        """Time of a step [ns]."""
+        """Compute the time of a step [ns]."""
         return 1e9 * min(self.times)
 
 
 def replay(arm: Arm, parts: int = 1) -> Array:
-    """Readings (samples, signals) of the pulse, in steps `parts` times as short."""
+    """Replay the pulse in steps shorter by a factor `parts`: readings (samples, signals)."""
     plant = arm.plant(INTERVAL / parts)
     plant.place()
     return plant.replay(np.repeat(pulse(), parts))[::parts]
 
 
 def error(found: Array, wanted: Array) -> float:
-    """Largest error of any column, over that column's peak."""
+    """Compute the largest error of any column, over that column's peak."""
     return float(np.max(np.max(np.abs(found - wanted), axis=0) / np.max(np.abs(wanted), axis=0)))
 
 
 class Independent:
-    """What scipy makes of an arm, as its readings."""
+    """Readings of an arm computed by scipy."""
 
     def __init__(self, arm: Arm) -> None:
         self.peer = Peer(arm.constants, arm.effects)
@@ -93,12 +93,12 @@ class Independent:
         self.rows = rows
 
     def readings(self, states: Array) -> Array:
-        """Readings (samples, signals) of states (samples, states)."""
+        """Convert states (samples, states) to readings (samples, signals)."""
         return states @ self.rows.T
 
 
 def reference() -> Array | None:
-    """Readings of the base arm by the tests' reference solver, which is tight and shares no code; None without it."""
+    """Solve the base arm by the tests' reference solver of tight tolerance, which shares no code; None without it."""
     path = Path(__file__).resolve().parent.parent / "tests" / "reference.py"
     if not path.is_file():
         return None
@@ -117,7 +117,7 @@ def reference() -> Array | None:
 
 
 def timed(work: Callable[[], Array], times: int) -> tuple[float, Array]:
-    """Shortest time [s] of some runs, and the result."""
+    """Time work: the shortest of several runs [s], and the result."""
     best, result = np.inf, np.zeros(0)
     for _ in range(times):
         start = time.perf_counter()
@@ -127,11 +127,11 @@ def timed(work: Callable[[], Array], times: int) -> tuple[float, Array]:
 
 
 def measure(say: Callable[[str], None]) -> dict[str, Any]:
-    """Measure all of it; figures by name."""
+    """Measure all figures, by name."""
     base_arm, six_arm = Arm.load("thesis"), six_effects()
     base, six, base_on, six_on = Timed(base_arm), Timed(six_arm), Timed(base_arm, REPEATED), Timed(six_arm, REPEATED)
     say("plant: one element and six effects in turns")
-    base.plant.replay(base.command)  # compiled or read from the cache before the first counts
+    base.plant.replay(base.command)  # compiled or loaded before the timing starts
     for k in range(ROUNDS):
         for timer in (base, six) if k % REPEATED else (base, six, base_on, six_on):
             timer.round()
@@ -172,7 +172,7 @@ def _peers(base: Timed, arm: Arm, say: Callable[[str], None]) -> dict[str, Any]:
         "lsoda": lambda: other.peer.smooth(pulse(), INTERVAL, 1e-6),
         "dop853": lambda: other.peer.exact(pulse(), INTERVAL, 1e-10),
     }
-    for _ in range(5):  # in turns with the plant: both meet the same machine
+    for _ in range(5):  # in turns with the plant: both run under the same load
         for name, solve in work.items():
             seconds, states = timed(solve, 1)
             base.times.clear()
@@ -190,7 +190,7 @@ def _peers(base: Timed, arm: Arm, say: Callable[[str], None]) -> dict[str, Any]:
 
 
 def mujoco_version() -> str:
-    """Version of MuJoCo, or that it is not there."""
+    """Read the version of MuJoCo, or "not installed"."""
     if importlib.util.find_spec("mujoco") is None:
         return "not installed"
     from importlib.metadata import version

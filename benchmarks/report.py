@@ -21,7 +21,7 @@ from flexarm_env.terminal.provenance import commit
 
 @dataclass(frozen=True)
 class Goal:
-    """One figure and what it should be: at most `most`, or at least `least`."""
+    """One figure with its goal: at most `most`, or at least `least`."""
 
     figure: str
     text: str
@@ -34,7 +34,7 @@ class Goal:
         return (self.most is None or value <= self.most) and (self.least is None or value >= self.least)
 
     def bound(self) -> str:
-        """The goal in words."""
+        """Format the goal in words."""
         sign, value = ("≤", self.most) if self.most is not None else ("≥", self.least)
         return f"{sign} {value:g} {self.unit}".rstrip()
 
@@ -60,7 +60,7 @@ GOALS = (
 
 
 def show(found: Mapping[str, Any]) -> None:
-    """Print the table and, below it, what belongs to its figures."""
+    """Print the table and, below it, remarks on its figures."""
     out = Console(width=120, highlight=False, soft_wrap=True)
     table = Table(box=None, pad_edge=False, padding=(0, 2))
     for column, justify in (("", "left"), ("measured", "right"), ("goal", "right"), ("", "left")):
@@ -77,7 +77,7 @@ def show(found: Mapping[str, Any]) -> None:
 
 
 def remarks(found: Mapping[str, Any]) -> list[str]:
-    """Sentences with what the table leaves out."""
+    """Write sentences on facts that the table omits."""
     lines = []
     if "base_ns" in found:
         lines += [
@@ -99,7 +99,7 @@ def remarks(found: Mapping[str, Any]) -> list[str]:
 
 
 def about_environments(found: Mapping[str, Any]) -> list[str]:
-    """Sentences about the environments: steps per second, the medians of pairs, and how busy the machine was."""
+    """Write sentences on the environments: steps per second, medians of pairs, and the load of the machine."""
     millions = {name: (found[f"batch_{name}_per_s"] or 0.0) / 1e6 for name in ("smooth", "white", "envpool")}
     lines = [
         f"One arm: {found['single_ours_per_s']:.0f} steps/s, Pendulum-v1 {found['single_pendulum_per_s']:.0f}; the median "
@@ -129,7 +129,7 @@ def about_environments(found: Mapping[str, Any]) -> list[str]:
 
 
 def write(path: Path, found: Mapping[str, Any], seconds: float) -> None:
-    """Write all figures with what they were measured on, whole or not at all."""
+    """Write all figures and the machine that they were measured on, atomically."""
     measured = [g for g in GOALS if found.get(g.figure) is not None]
     goals = {g.figure: {"goal": g.bound(), "met": g.met(found[g.figure])} for g in measured}
     content = {
@@ -147,7 +147,7 @@ def write(path: Path, found: Mapping[str, Any], seconds: float) -> None:
 
 
 def machine() -> dict[str, Any]:
-    """What the figures were measured on."""
+    """Describe the machine that the figures are measured on."""
     from importlib.metadata import version
 
     name = platform.processor()

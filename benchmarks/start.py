@@ -1,4 +1,4 @@
-"""How long the import takes and the first simulation, each in fresh processes."""
+"""Time of the import and of the first simulation, each in fresh processes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ print(time.perf_counter() - t)
 
 
 def measure(say: Callable[[str], None]) -> dict[str, Any]:
-    """Shortest of some fresh processes, the first of which may have compiled; Python's own start does not count."""
+    """Time fresh processes, the shortest of several: the first may compile; Python's own start does not count."""
     say("import and first simulation in fresh processes")
     seconds = {name: [_run(script) for _ in range(TIMES)] for name, script in (("import", IMPORT), ("first", FIRST))}
     return {"import_s": min(seconds["import"]), "first_simulation_s": min(seconds["first"][1:])}

@@ -13,9 +13,8 @@ if TYPE_CHECKING:
     from flexarm_env.arm import Arm
     from flexarm_env.effects import Effect, catalogue
     from flexarm_env.errors import InputError
-    from flexarm_env.experiments.simulate import simulate
-    from flexarm_env.identify.compare import compare
     from flexarm_env.identify.diagnose import diagnose
+    from flexarm_env.identify.explain.compare import compare
     from flexarm_env.identify.fit import add, fit
     from flexarm_env.recordings.recording import Recording
 
@@ -27,7 +26,7 @@ _PLACES = {
     "InputError": "errors",
     "Recording": "recordings.recording",
     "add": "identify.fit",
-    "compare": "identify.compare",
+    "compare": "identify.explain.compare",
     "diagnose": "identify.diagnose",
     "fit": "identify.fit",
     "simulate": "experiments.simulate",

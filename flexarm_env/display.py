@@ -1,4 +1,4 @@
-"""How results show themselves in a notebook. The pictures lie in a higher layer and are looked up when they are wanted."""
+"""Display of results in a notebook. Figures lie in a higher layer and are imported when one is drawn."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ _PICTURES = "flexarm_env.pictures.notebook"
 
 
 class Shown:
-    """Shows itself as a table in a notebook, and as a figure by `plot`."""
+    """Base of results with a table in a notebook and a figure by `plot`."""
 
     def _repr_html_(self) -> str:
         return str(importlib.import_module(_PICTURES).as_html(self))
 
     def plot(self) -> Any:
-        """Return a Plotly figure, which a notebook shows.
+        """Draw a Plotly figure, which a notebook displays.
 
         Raises:
             InputError: where Plotly is not installed.

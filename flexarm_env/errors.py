@@ -1,4 +1,4 @@
-"""The one exception that bad input raises, and the hint that goes with a misspelt word."""
+"""The exception for bad input, and the hint for a misspelt word."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from collections.abc import Iterable
 
 
 class InputError(ValueError):
-    """Bad input from a person: one line that says what came, what is allowed and what to do."""
+    """Bad input from a user, in one line: the input, the allowed values, and the remedy."""
 
 
 def did_you_mean(word: str, allowed: Iterable[str]) -> str:
-    """Return "; did you mean 'x'?" for the nearest allowed word, else the list of those allowed.
+    """Suggest the nearest allowed word, "; did you mean 'x'?", or list those allowed.
 
     Args:
-        word: what came.
-        allowed: the words that exist.
+        word: as given.
+        allowed: the valid words.
     """
     options = sorted(set(allowed))
     near = difflib.get_close_matches(word, options, n=1, cutoff=0.6)

@@ -1,4 +1,4 @@
-"""Files that are written whole or not at all, and read only if they are files."""
+"""Atomic writing of files, and bounded reading of TOML files."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ LARGEST_TOML = 1_000_000
 
 
 def write_whole(path: Path, content: str | bytes) -> None:
-    """Write a file, text as UTF-8, beside its place, then move it there. Where a link stands, what it points to is written.
+    """Write a file atomically, text as UTF-8: first beside its place, then moved there. A link's target is written.
 
     Raises:
-        InputError: if the place cannot be written, or holds something else than a file.
+        InputError: if the place cannot be written, or is no regular file.
     """
     place = Path(os.path.realpath(path))
     if not path.name or (place.exists() and not place.is_file()):
@@ -38,10 +38,10 @@ def write_whole(path: Path, content: str | bytes) -> None:
 
 
 def read_toml(path: Path) -> dict[str, Any]:
-    """Return the tables of a TOML file in UTF-8, with or without a byte order mark.
+    """Read the tables of a TOML file in UTF-8, with or without a byte order mark.
 
     Raises:
-        InputError: for what is no regular file, is too large, or is not TOML.
+        InputError: if it is no regular file, too large, or not TOML.
     """
     try:
         status = path.stat()

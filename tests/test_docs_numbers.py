@@ -24,7 +24,7 @@ HIDDEN = RESULTS / "hidden_effects" / "diagnose-8"
 
 
 def demo_table(numbers: str) -> str:
-    """What README.md says of the demo, from the numbers in results/demo/demo.json."""
+    """Write README.md's part on the demo from the numbers in results/demo/demo.json."""
     from flexarm_env.demo.story import HIDDEN
     from flexarm_env.pictures.words import number
 
@@ -38,24 +38,24 @@ def demo_table(numbers: str) -> str:
     rows = [f"| {name} | {number(added['error'][k])} | {number(added['free_run'][k])} |" for name, k in steps.items()]
     effect, key, size, unit = HIDDEN
     found = f"The verdict is `{diagnosis['verdict']}`: {', '.join(diagnosis['effects']) or 'none named'}."
-    hidden = f"Hidden was {effect}, {key} {size} {unit}"
+    hidden = f"The hidden effect was {effect} with a {size} {unit} {key}"
     if added["effect"] == effect:
         value = added["parameters"][key]
         low, high = (number(value[end], 4) for end in ("low", "high"))
-        hidden += f"; found {number(value['value'], 4)} {unit} (90 % interval {low} to {high})"
+        hidden += f"; the estimate is {number(value['value'], 4)} {unit} (90 % interval {low} to {high})"
     lines = [
         "| held-out error over noise | windows of 1 s | one free run |",
         "|---|---:|---:|",
         *rows,
         "",
-        f"{found} {hidden}.",
-        f"The diagnosis took {number(diagnosis['seconds'], 2)} s in two processes.",
+        f"{found} The diagnosis took {number(diagnosis['seconds'], 2)} s in two processes.",
+        f"{hidden}.",
     ]
     return "\n".join(lines) + "\n"
 
 
 def baselines_table(numbers: str) -> str:
-    """What README.md says of the baselines, from the numbers in results/baselines/baselines.json."""
+    """Write README.md's table of the baselines from the numbers in results/baselines/baselines.json."""
     from agents.report import summary_of
 
     result = json.loads(numbers)
@@ -67,18 +67,18 @@ def baselines_table(numbers: str) -> str:
 
 
 def hidden_effects_words(numbers: str) -> str:
-    """What README.md says of the benchmark of hidden effects, from the numbers in its table.json."""
+    """Write README.md's part on the benchmark of hidden effects from the numbers in its table.json."""
     results = json.loads(numbers)
     share = {figure["what"]: f"{100.0 * figure['value']:.0f} %" for figure in results["figures"]}
     one, two = share["right effect first, strength 3"], share["two effects, both right, strength 3"]
     like_one = share["right effect or its exact twin first, strength 3"]
     like_two = share["two effects, both right or exact twins, strength 3"]
     words = (
-        f"[The benchmark](docs/hidden-effects.md) has {results['cases']} machines of that simulator, with something hidden or"
-        f" nothing. `diagnose` names the right effect first in {one} where it leaves an error of three times the noise, and both"
-        f" of two in {two} ({like_one} and {like_two} if effects that are the same motion count as one). It cries wolf on"
-        f" {share['false alarm on nulls']} of the machines that lack nothing, and calls"
-        f" {share['outside the catalogue: flagged']} of what no catalogue holds unknown."
+        f"[The benchmark](docs/hidden-effects.md) has {results['cases']} machines of that simulator, with hidden effects or none."
+        f" `diagnose` names the right effect first in {one} of those where it causes an error of three times the noise, and both"
+        f" of two effects in {two} ({like_one} and {like_two} if effects with the same motion count as one). The false-alarm"
+        f" rate is {share['false alarm on nulls']}, and {share['outside the catalogue: flagged']} of the effects from outside"
+        " the catalogue are reported as unknown."
     )
     filled = textwrap.fill(words.replace(" %", "\xa0%"), 124, break_long_words=False, break_on_hyphens=False)
     return filled.replace("\xa0", " ") + "\n"
@@ -90,7 +90,7 @@ def hidden_effects_table(written: str) -> str:
 
 
 def methods_table(numbers: str) -> str:
-    """What the methods make of the benchmark, side by side: the first, whose numbers are given, on BIC's sample as well."""
+    """Tabulate the methods' figures side by side: the first, of the given numbers, on BIC's sample as well."""
     sampled = [(HIDDEN / "answers" / answer.name).read_text() for answer in HIDDEN.with_name("bic-8").glob("answers/*.json")]
     same = figures([json.loads(answer) for answer in sampled])
     results = [json.loads(numbers), {"method": "diagnose", "cases": f"the {len(sampled)}", "figures": [asdict(f) for f in same]}]
@@ -106,7 +106,7 @@ def methods_table(numbers: str) -> str:
 
 
 def times_words(numbers: str) -> str:
-    """How long a core takes for a case of the benchmark, from its answers, beside the table whose numbers are given."""
+    """Write the times of one core for a case of the benchmark, from the answers of the table with the given numbers."""
     answers = [json.loads(answer.read_text()) for answer in (HIDDEN / "answers").glob("*.json")]
     assert len(answers) == json.loads(numbers)["cases"]
     none, one, two = (
@@ -121,7 +121,7 @@ def times_words(numbers: str) -> str:
 
 @dataclass(frozen=True)
 class Table:
-    """A table of a document: its name in the comments, the numbers it is made of, and how."""
+    """A table of a document: its name in the comments, the file of its numbers, and the function that writes it."""
 
     name: str
     document: Path

@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import yaml  # comes with pre-commit
 
 PROJECT = Path(__file__).resolve().parent.parent
 PACKAGE = "flexarm_env"
@@ -170,6 +171,17 @@ def test_version_is_the_same_everywhere():
     assert importlib.metadata.version(METADATA["name"]) == METADATA["version"]
 
 
+def test_the_citation_is_of_this_version():
+    cited = yaml.safe_load((PROJECT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert {"cff-version", "message", "title", "authors"} <= set(cited)
+    assert (cited["cff-version"], cited["type"]) == ("1.2.0", "software")
+    assert (cited["version"], cited["license"]) == (METADATA["version"], METADATA["license"])
+    assert cited["authors"] == METADATA["authors"]
+    (thesis,) = cited["references"]
+    assert thesis["type"] == "thesis"
+    assert {"authors", "title"} <= set(thesis)
+
+
 def test_import_is_light():
     program = f"import sys, {PACKAGE}; print(*sorted(sys.modules))"
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
@@ -189,7 +201,7 @@ def test_the_wheel_carries_code_and_data_and_nothing_else(tmp_path):
     subprocess.run(build, cwd=PROJECT, capture_output=True, check=True)
     (wheel,) = tmp_path.glob("*.whl")
     packed = {name for name in zipfile.ZipFile(wheel).namelist() if ".dist-info/" not in name}
-    kinds = {".py", ".toml", ".csv"}
+    kinds = {".py", ".toml", ".csv", ".typed"}
     own = {f.relative_to(PROJECT) for f in (PROJECT / PACKAGE).rglob("*") if f.suffix in kinds}
     configs = {PACKAGE / f.relative_to(PROJECT) for f in (PROJECT / "configs").rglob("*.toml")}
     assert {path.as_posix() for path in own | configs} <= packed

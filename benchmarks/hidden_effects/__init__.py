@@ -1,5 +1,6 @@
-"""Hidden effects: how often a diagnosis names the effect that a machine has and its model lacks.
+"""Hidden effects: the share of machines for which a diagnosis names the effect that the model lacks.
 
-The machine is the independent simulator of tests/rig. Every case hides one effect of the catalogue, two, one that the
-catalogue does not hold, or nothing but wrong constants; it is three recordings of 10 s, in the form of a real rig's.
+The machine is the independent simulator of tests/rig. The model of every case may have wrong constants, and lacks one effect of
+the catalogue, two, one from outside the catalogue, or none. A case consists of three recordings of 10 s, in the form of a real
+rig's.
 """

@@ -1,4 +1,4 @@
-"""Run the benchmark of hidden effects, and write its table; a run that was stopped goes on where it stopped."""
+"""Run the benchmark of hidden effects, and write its table; an interrupted run resumes at the first missing answer."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _options() -> argparse.Namespace:
 
 
 def main() -> None:
-    """Answer the cases that are asked for."""
+    """Answer the requested cases."""
     asked = _options()
     began = time.perf_counter()
 

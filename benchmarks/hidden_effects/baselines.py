@@ -1,4 +1,4 @@
-"""What others do, on the same plant and the same fits: best fit wins, and stepwise by the Bayesian information criterion."""
+"""Baselines on the same plant and the same fits: best fit, and stepwise selection by the Bayesian information criterion."""
 
 from __future__ import annotations
 
@@ -8,39 +8,41 @@ from collections.abc import Sequence
 from typing import Any
 
 from flexarm_env import Arm, Recording
-from flexarm_env.identify.data import Data, prepare
-from flexarm_env.identify.problem import Score, score
-from flexarm_env.identify.refit import Refit, best_refit, refit
-from flexarm_env.identify.screen import attempt, best_trials, candidates, screening_base, signatures
+from flexarm_env.identify.calibrate.calibration import Calibration
+from flexarm_env.identify.calibrate.calibrator import Calibrator
+from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.select.screen import best_trials, try_effect
+from flexarm_env.identify.select.signatures import baseline
+from flexarm_env.identify.select.starts import candidates
 
 MOST_EFFECTS = 3
 
 
 def stepwise(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
-    """Add the effect that fits best while the Bayesian information criterion falls (Schwarz, Ann. Stat. 6 (1978) 461).
+    """Add the best-fitting effect while the Bayesian information criterion falls (Schwarz, Ann. Stat. 6 (1978) 461).
 
-    Its first step is what `best_fit_wins` answers, and is kept with the seconds of one core that came after it, as "first_step".
+    "first_step" holds the answer of `best_fit_wins`, which is the first step, with the core seconds spent after it.
     """
-    nominal, data = prepare(arm, recordings)
-    base = found = best_refit(nominal, data)
+    calibrator = Calibrator(*prepare(arm, recordings))
+    base = found = calibrator.constants()
     effects: list[str] = []
     first: dict[str, Any] = {}
     stepped = 0.0
     while len(effects) < MOST_EFFECTS:
-        step = _best(found, nominal, data)
+        step = _best(calibrator, found)
         if not first:
             after = (found, []) if step is None else (step[1], [step[0]])
-            first, stepped = answer(after[1], nominal, base, after[0], data), time.process_time()
-        if step is None or _criterion(step[1], data) >= _criterion(found, data):
+            first, stepped = answer(after[1], calibrator, base, after[0]), time.process_time()
+        if step is None or _criterion(calibrator, step[1]) >= _criterion(calibrator, found):
             break
         effects.append(step[0])
         found = step[1]
     later = time.process_time() - stepped
-    return answer(effects, nominal, base, found, data) | {"first_step": {"found": first, "later_seconds": later}}
+    return answer(effects, calibrator, base, found) | {"first_step": {"found": first, "later_seconds": later}}
 
 
 def best_fit_wins(stepped: dict[str, Any]) -> dict[str, Any]:
-    """Take the effect that fits best, always (the ladder of models of Rhoban's BAM: Duclusaud et al., arXiv 2410.08650).
+    """Take the best-fitting effect, always (the ladder of models of Rhoban's BAM: Duclusaud et al., arXiv 2410.08650).
 
     Args:
         stepped: the benchmark's answer by `stepwise`.
@@ -49,35 +51,32 @@ def best_fit_wins(stepped: dict[str, Any]) -> dict[str, Any]:
     return stepped | {"found": first["found"], "cpu_seconds": stepped["cpu_seconds"] - first["later_seconds"]}
 
 
-def _best(found: Refit, nominal: Arm, data: Data) -> tuple[str, Refit] | None:
-    """Return the effect whose addition fits the recordings best, and the arm refitted with it."""
-    base = screening_base(found, data)
-    trials = [attempt(base, s) for name in candidates(found.arm) for s in signatures(base, name)]
+def _best(calibrator: Calibrator, found: Calibration) -> tuple[str, Calibration] | None:
+    """Find the effect with the best fit when added, and the arm refitted with it."""
+    base = baseline(found, calibrator.dataset)
+    trials = [trial for name in candidates(found.arm, calibrator.dataset) for trial in try_effect(base, name)]
     if not trials:
         return None
     best = min(best_trials(trials), key=lambda trial: trial.cost)
-    return best.effect, refit(best.arm, nominal, data)
+    return best.effect, calibrator.calibrate(best.arm)
 
 
-def _criterion(found: Refit, data: Data) -> float:
-    """Return BIC: the sum of squares of the errors in windows over the noise, and what the parameters cost."""
+def _criterion(calibrator: Calibrator, found: Calibration) -> float:
+    """Compute BIC: the sum of squared errors in windows over the noise, plus the penalty on parameters."""
+    data = calibrator.dataset
     count = sum(int(run.train.sum()) for run in data.runs) * len(data.signals)
-    return count * score(found.arm, data, held_out=False).windows ** 2 + len(found.coordinates) * math.log(count)
+    return count * calibrator.score(found.arm, held_out=False).windows ** 2 + len(found.parameters) * math.log(count)
 
 
-def answer(effects: list[str], nominal: Arm, base: Refit, found: Refit, data: Data) -> dict[str, Any]:
-    """Return what a method found, in the form of a diagnosis."""
-    before, first, last = (score(arm, data) for arm in (nominal, base.arm, found.arm))
+def answer(effects: list[str], calibrator: Calibrator, base: Calibration, found: Calibration) -> dict[str, Any]:
+    """Convert a method's result to the form of a diagnosis."""
+    errors = [calibrator.score(arm).windows for arm in (calibrator.nominal, base.arm, found.arm)]
     verdict = "effects" if effects else "parameters"
     return {
         "verdict": verdict,
         "effects": effects,
         "equivalent": [[name] for name in effects],
         "ranking": [{"effect": name, "gain": 1.0, "accepted": True, "parameters": {}} for name in effects],
-        "error": _errors(before, first, last),
+        "error": dict(zip(("nominal", "refitted", "final"), errors, strict=True)),
         "constants": {},
     }
-
-
-def _errors(before: Score, first: Score, last: Score) -> dict[str, float]:
-    return {"nominal": before.windows, "refitted": first.windows, "final": last.windows}

@@ -1,4 +1,4 @@
-"""Find the size of each effect at which a model with refitted constants misses by so many times the noise."""
+"""Find the size of each effect at which a model with refitted constants has a given error over the noise."""
 
 from __future__ import annotations
 
@@ -14,30 +14,30 @@ from benchmarks.hidden_effects.effects import CATALOGUE, OUTSIDE, Hidden
 from benchmarks.hidden_effects.machine import record
 from flexarm_env import Arm
 from flexarm_env.files import write_whole
-from flexarm_env.identify.data import prepare
-from flexarm_env.identify.problem import score
-from flexarm_env.identify.refit import refit
+from flexarm_env.identify.calibrate.calibrator import Calibrator
+from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.replay.error_measure import score
 
-#: Strengths that are met to this share, in at most so many trials, and by how much (a logarithm) one may be missed.
+#: Relative tolerance of a strength, largest number of trials, and largest accepted deviation (a logarithm).
 NEAR, TRIALS, MISSED = 0.15, 5, 0.35
-#: The first size tried is weaker than the strongest by this, and the last (logarithms).
+#: Weakening of the first size tried against the strongest, and of the last (logarithms).
 FIRST, LAST = 1.5, 8.0
 LEAST = 0.05
 
 
 def strength_at(hidden: Hidden, size: float) -> float:
-    """Return the excess error over the noise that the refitted constants leave, all constants but the effect being right."""
+    """Compute the excess error over the noise after a refit of the constants, which are right before it."""
     middle = {key: 0.5 * (low + high) if low > -1.0 else 0.3 * high for key, (low, high) in hidden.others.items()}
     settings = in_commands(hidden, {hidden.setting: size, **middle}, EXPERIMENTS[0], seed=1)
     case = Case("", "one", (), 0.0, settings, EXPERIMENTS[0], seed=1)
     arm, data = prepare(Arm.load("thesis-fem"), record(case))
-    found = refit(arm, arm, data)
+    found = Calibrator(arm, data).calibrate(arm)
     error = min(score(found.arm, data).windows, score(arm, data).windows)
     return math.sqrt(max(error**2 - 1.0, 0.0))
 
 
 def find(effect: str, hidden: Hidden) -> tuple[str, dict[str, float]]:
-    """Return the effect's name and its size by strength, without strengths that no sensible size reaches."""
+    """Find the effect's size by strength, without strengths beyond any plausible size; return its name first."""
     known: list[tuple[float, float]] = []  # logarithms of the weakening from the strongest and of the strength
 
     def size(weaker: float) -> float:
@@ -61,7 +61,7 @@ def find(effect: str, hidden: Hidden) -> tuple[str, dict[str, float]]:
 
 
 def _next(known: list[tuple[float, float]], wanted: float) -> float | None:
-    """Return where to try next: between the neighbours of what is wanted, else along a straight line; None past either end."""
+    """Choose the next trial: interpolate between neighbours, else extrapolate a line; None past either end."""
     if not known:
         return FIRST
     above = max((k for k in known if k[1] >= wanted), default=None)
@@ -77,7 +77,7 @@ def _next(known: list[tuple[float, float]], wanted: float) -> float | None:
 
 
 def calibrate(pattern: str, jobs: int, say: Callable[[str], None]) -> None:
-    """Write the sizes of the effects whose names match a pattern; the others keep theirs."""
+    """Write the sizes of effects with names that match a pattern; the others keep theirs."""
     everything = CATALOGUE | OUTSIDE
     found = dict(sizes()) if SIZES.exists() else {}
     chosen = [name for name in everything if fnmatch.fnmatchcase(name, pattern)]

@@ -1,4 +1,4 @@
-"""The list of cases: from one seed always the same."""
+"""The list of cases, determined by its seed."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from benchmarks.hidden_effects.machine import Plan, largest_command
 
 SIZES = Path(__file__).parent / "sizes.json"
 STRENGTHS = (1.0, 3.0, 10.0)
-#: By how much the model's constants are wrong, each of them evenly up to this share.
+#: Largest relative error of the model's constants, each drawn uniformly.
 WRONG = (0.0, 0.1, 0.3)
 NULLS, PAIRS = 60, 40
-#: By how much (a logarithm) sizes scatter around those of their strength.
+#: Scatter (a logarithm) of sizes around that of their strength.
 SCATTER = 0.2
 EXPERIMENTS: tuple[tuple[Plan, ...], ...] = (
     (("pulse", 1.0, 0.0), ("square", 1.0, 0.0), ("sweep", 1.0, 0.0)),
@@ -34,13 +34,13 @@ class Case:
     """One machine to be diagnosed.
 
     Attributes:
-        name: its own.
+        name: unique.
         kind: "one", "two", "outside" or "null".
-        effects: hidden, as the catalogue (or OUTSIDE) calls them.
+        effects: hidden ones, by name in the catalogue (or OUTSIDE).
         strength: excess error after a refit of the constants, over the noise; 0 for a null.
         settings: of the rig.
         runs: experiment, factor on the controller's gains, known payload [kg] of each.
-        seed: of its noise and of its experiments' details.
+        seed: of its noise and of random details of its experiments.
     """
 
     name: str
@@ -52,24 +52,24 @@ class Case:
     seed: int
 
     def as_json(self) -> dict[str, Any]:
-        """Return plain data."""
+        """Convert to plain data."""
         return asdict(self)
 
 
 @lru_cache
 def sizes() -> dict[str, dict[str, float]]:
-    """Return the size of each effect at each strength: what `python -m benchmarks.hidden_effects --calibrate` found."""
+    """Read the size of each effect at each strength, found by `python -m benchmarks.hidden_effects --calibrate`."""
     found: dict[str, dict[str, float]] = json.loads(SIZES.read_text())
     return found
 
 
 def stream(seed: int, name: str) -> np.random.Generator:
-    """Return the random numbers of a case: those of the others do not move them."""
+    """Seed the random numbers of a case, independent of the other cases."""
     return np.random.default_rng([seed, zlib.crc32(name.encode())])
 
 
 def settings_of(hidden: Hidden, size: float, draw: np.random.Generator) -> dict[str, float]:
-    """Return the rig's settings for an effect of a size."""
+    """Build the rig's settings for an effect of a size."""
     sign = draw.choice([-1.0, 1.0]) if hidden.signed else 1.0
     scatter = float(np.exp(draw.uniform(-SCATTER, SCATTER)))
     size = 1.0 - (1.0 - size) * scatter if hidden.of_peak else size * scatter
@@ -95,7 +95,7 @@ def _case(seed: int, name: str, kind: str, effects: tuple[str, ...], strength: f
 
 
 def in_commands(hidden: Hidden, settings: dict[str, float], runs: tuple[Plan, ...], seed: int) -> dict[str, float]:
-    """Return the rig's settings with an effect's share of the largest command turned into a command [A], if it is one."""
+    """Convert an effect's size from a share of the largest command to a command [A], where it is such a share."""
     if not hidden.of_peak:
         return settings
     without = {key: value for key, value in settings.items() if key != hidden.setting}
@@ -103,7 +103,7 @@ def in_commands(hidden: Hidden, settings: dict[str, float], runs: tuple[Plan, ..
 
 
 def cases(seed: int) -> list[Case]:
-    """Return all cases of a seed."""
+    """Draw all cases of a seed."""
     out = []
     for strength in STRENGTHS:
         for effect in (*CATALOGUE, *OUTSIDE):
@@ -120,6 +120,6 @@ def cases(seed: int) -> list[Case]:
 
 
 def sample(seed: int, count: int) -> list[Case]:
-    """Return some cases of a seed, drawn at random: a smaller sample is part of every larger one."""
+    """Draw a sample of a seed's cases at random: a smaller sample is part of every larger one."""
     every = cases(seed)
     return [every[i] for i in stream(seed, "sample").permutation(len(every))[:count]]

@@ -1,4 +1,4 @@
-"""What each hidden effect is on the rig: the setting that scales it, its other settings, and from where to where."""
+"""Each hidden effect on the rig: the setting that scales it, its other settings, and their ranges."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ class Hidden:
     """One effect of the rig.
 
     Attributes:
-        setting: of the rig, which scales it.
-        strongest: setting beyond which no machine would have it.
-        others: the rig's other settings, each drawn evenly from its range.
-        signed: whether its size has either sign.
+        setting: of the rig that scales the effect.
+        strongest: largest plausible value of the setting.
+        others: the rig's other settings, each drawn uniformly from its range.
+        signed: whether its size may have either sign.
         inverse: whether a smaller setting is a stronger effect.
-        of_peak: whether sizes are shares of the largest command that the machine would get without it.
+        of_peak: whether sizes are shares of the largest command without the effect.
     """
 
     setting: str
@@ -32,7 +32,7 @@ class Hidden:
 
 PHASE = (-math.pi, math.pi)
 
-#: Effects of the catalogue, without those that the model has (viscous, coulomb, stiction) and one of no size (higher_modes).
+#: Effects of the catalogue, without those of the model (viscous, coulomb, stiction) and one without a size (higher_modes).
 CATALOGUE = {
     "stribeck": Hidden("stribeck", 0.6, {"vs": (0.08, 0.4)}),
     "asymmetric_coulomb": Hidden("asym", 0.18, signed=True),
@@ -67,7 +67,7 @@ CATALOGUE = {
     "time_offset": Hidden("late", 0.06),
 }
 
-#: What no catalogue holds.
+#: Effects outside the catalogue.
 OUTSIDE = {
     "hum": Hidden("hum", 0.5, {"humf": (3.0, 9.0), "humphi": PHASE}),
     "fixture": Hidden("fix_j", 0.01, {"fix_f": (9.0, 18.0)}, inverse=True),
@@ -81,5 +81,5 @@ OUTSIDE = {
     "gage_creep": Hidden("creep", 0.6),
 }
 
-#: The rig's constants that a model has wrong, static and sliding friction of a body by one factor.
+#: Constants of the rig that are wrong in the model; static and sliding friction of a body by one factor.
 CONSTANTS = (("kphi",), ("jm",), ("jh",), ("bm",), ("bs",), ("tmf", "tms"), ("taf", "tas"), ("ei",), ("density",), ("ksg",))

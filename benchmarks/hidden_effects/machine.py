@@ -13,17 +13,17 @@ from tests.rig import SIGNALS, simulate
 if TYPE_CHECKING:
     from benchmarks.hidden_effects.cases import Case
 
-#: What a run of a case is: the rig's experiment, the factor on the controller's gains, and a known payload [kg].
+#: A run of a case: the rig's experiment, the factor on the controller's gains, and a known payload [kg].
 Plan = tuple[str, float, float]
 
 
 def record(case: Case) -> list[Recording]:
-    """Return the recordings of a case, rounded as a file has them."""
+    """Simulate the recordings of a case, rounded as in a file."""
     return [_recorded(case.settings, run, case.seed) for run in case.runs]
 
 
 def largest_command(settings: Mapping[str, float], runs: tuple[Plan, ...], seed: int) -> float:
-    """Return the largest command [A] that a machine gets in its runs."""
+    """Find the largest command [A] of a machine's runs."""
     return max(float(np.abs(_played(settings, run, seed)["current"]).max()) for run in runs)
 
 

@@ -1,4 +1,4 @@
-"""Diagnose the cases, each into a file of its own, so that a run that was stopped goes on where it stopped."""
+"""Diagnose the cases, each into its own file, which lets an interrupted run resume."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ARM = "thesis-fem"
 
 
 def by_diagnosis(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
-    """Return what `flexarm diagnose --json` writes."""
+    """Diagnose, with the result as of `flexarm diagnose --json`."""
     return diagnose(arm, recordings, jobs=1).as_json()
 
 
@@ -44,19 +44,19 @@ def _answer(case: Case, method: Method, folder: Path) -> dict[str, Any]:
 def run(
     cases: Sequence[Case], method: Method, folder: Path, jobs: int, say: Callable[[int, dict[str, Any]], None]
 ) -> list[dict[str, Any]]:
-    """Return what a method answers to each case.
+    """Collect a method's answer to each case.
 
     Args:
         cases: to be diagnosed.
         method: takes the arm and the recordings.
-        folder: for the answers; those that it holds already are taken from it.
-        jobs: processes; joblib's backends spread them over more machines.
+        folder: of the answers; existing ones are read from it.
+        jobs: number of processes; joblib's backends spread them over more machines.
         say: called with the number of answers so far and the latest.
     """
     folder.mkdir(parents=True, exist_ok=True)
     answers = []
     tasks = [delayed(_answer)(case, method, folder) for case in cases]
-    # Answers that are kept take no time, from which joblib would learn to hand out long cases many at a time.
+    # Stored answers take no time, from which joblib would infer to hand out long cases in large batches.
     for answer in Parallel(n_jobs=jobs, return_as="generator", batch_size=1)(tasks):
         answers.append(answer)
         say(len(answers), answer)

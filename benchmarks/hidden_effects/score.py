@@ -1,4 +1,4 @@
-"""The benchmark's table: what share of the answers is right, against the goals."""
+"""The benchmark's table: the share of right answers, against the goals."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ SENSORS = (
     "crosstalk",
     "gage_creep",
 )
-#: Effects that are the same motion under current drive, so that no method does better than chance on which it is.
+#: Effects with the same motion under current drive, between which no method does better than chance.
 TWINS = {"time_offset": "input_delay", "brush_drop": "dead_zone"}
 
 
 @dataclass(frozen=True)
 class Figure:
-    """One line of the table: what, the goal in words, how many of how many (None of none), and whether that meets it."""
+    """One line of the table: quantity, goal in words, value (None without cases), number of cases, and whether it is met."""
 
     what: str
     goal: str
@@ -40,7 +40,7 @@ class Figure:
 
     @property
     def text(self) -> str:
-        """The value with its unit and the number of cases."""
+        """Format the value with its unit and the number of cases."""
         if self.value is None:
             return "none"
         if self.unit == "%":
@@ -49,18 +49,18 @@ class Figure:
 
     @property
     def judged(self) -> str:
-        """Whether it meets its goal, in a word; of none, nothing is said."""
+        """Write whether it meets its goal, in a word; empty without cases."""
         return "" if self.value is None else "met" if self.met else "missed"
 
 
 def first(answer: Answer) -> str | None:
-    """Return the effect that a diagnosis names first, if any."""
+    """Select the effect that a diagnosis names first, if any."""
     effects: list[str] = answer["found"]["effects"]
     return effects[0] if effects else None
 
 
-def either(effects: Iterable[str]) -> set[str]:
-    """Return effects, each twin by one name for both."""
+def merge_twins(effects: Iterable[str]) -> set[str]:
+    """Map effects to names that are common to twins."""
     return {TWINS.get(effect, effect) for effect in effects}
 
 
@@ -70,12 +70,12 @@ def is_right(answer: Answer) -> bool:
 
 
 def is_right_or_twin(answer: Answer) -> bool:
-    """Whether the first effect named is the hidden one, or the same motion."""
-    return either(answer["found"]["effects"][:1]) == either(answer["case"]["effects"][:1])
+    """Whether the first effect named is the hidden one, or its twin."""
+    return merge_twins(answer["found"]["effects"][:1]) == merge_twins(answer["case"]["effects"][:1])
 
 
 def is_in_class(answer: Answer) -> bool:
-    """Whether the hidden effect is among at most two that the diagnosis cannot tell apart."""
+    """Whether the hidden effect is among at most two that the diagnosis cannot distinguish."""
     classes = answer["found"]["equivalent"]
     return is_right(answer) or (bool(classes) and len(classes[0]) <= 2 and answer["case"]["effects"][0] in classes[0])
 
@@ -91,28 +91,28 @@ def both_right(answer: Answer) -> bool:
 
 
 def both_right_or_twins(answer: Answer) -> bool:
-    """Whether exactly the hidden effects are named, or the same motions."""
-    return either(answer["found"]["effects"]) == either(answer["case"]["effects"])
+    """Whether exactly the hidden effects are named, or their twins."""
+    return merge_twins(answer["found"]["effects"]) == merge_twins(answer["case"]["effects"])
 
 
 def right_side(answer: Answer) -> bool:
-    """Whether a sensor's fault is taken for one, and nothing else is."""
+    """Whether a sensor's fault is diagnosed as one, and any other effect is not."""
     named = first(answer)
     return named is not None and (named in SENSORS) == (answer["case"]["effects"][0] in SENSORS)
 
 
 def _is_late(answer: Answer) -> bool:
-    """Whether what is hidden is a delay, of which no recording tells on which side it is."""
-    return "input_delay" in either(answer["case"]["effects"][:1])
+    """Whether the hidden effect is a delay: no recording shows whether it lies in the sensor or in the drive."""
+    return "input_delay" in merge_twins(answer["case"]["effects"][:1])
 
 
 def verdict_in(*verdicts: str) -> Callable[[Answer], bool]:
-    """Return whether an answer has one of some verdicts."""
+    """Build the predicate that an answer has one of some verdicts."""
     return lambda answer: answer["found"]["verdict"] in verdicts
 
 
 def removed(answer: Answer) -> float:
-    """Return the share of the excess held-out error that the corrected arm removes."""
+    """Compute the share of the excess held-out error that the corrected arm removes."""
     error = answer["found"]["error"]
     before, after = (max(error[key] ** 2 - 1.0, 0.0) for key in ("refitted", "final"))
     return 1.0 - after / before if before > 0.0 else 0.0
@@ -130,7 +130,7 @@ def _median(what: str, goal: str, values: Sequence[float], meets: Callable[[floa
 
 
 def figures(answers: Iterable[Answer]) -> list[Figure]:
-    """Return the lines of the table."""
+    """Compute the lines of the table."""
     every = list(answers)
 
     def of(kind: str, *strengths: float) -> list[Answer]:
@@ -175,8 +175,8 @@ def figures(answers: Iterable[Answer]) -> list[Figure]:
     ]
 
 
-def wrong(answers: Iterable[Answer]) -> list[tuple[str, str, int]]:
-    """Return what was hidden, what was named in its place, and how often, for single effects that were missed."""
+def confusions(answers: Iterable[Answer]) -> list[tuple[str, str, int]]:
+    """Count the confusions of single effects: hidden effect, effect named in its place, number of cases."""
     counts: Counter[tuple[str, str]] = Counter()
     for answer in answers:
         if answer["case"]["kind"] == "one" and not is_right(answer):

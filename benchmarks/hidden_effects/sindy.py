@@ -1,7 +1,7 @@
-"""SINDy on residuals: what of the torque that the refitted arm does not explain is a sparse sum of the effects' laws.
+"""SINDy on residuals: the torque that the refitted arm does not explain, as a sparse sum of the effects' laws.
 
 Sparse identification of nonlinear dynamics (Brunton, Proctor and Kutz, PNAS 113 (2016) 3932), by pysindy's sequentially
-thresholded least squares, on the hub's torque as a smoother estimates it. It sees effects on the hub, and no others.
+thresholded least squares, on the hub's torque as estimated by a smoother. It detects effects on the hub only.
 """
 
 from __future__ import annotations
@@ -16,24 +16,24 @@ from pysindy import STLSQ
 
 from benchmarks.hidden_effects.baselines import answer
 from flexarm_env import Arm, Recording
-from flexarm_env.identify.data import prepare
-from flexarm_env.identify.hub_torque import acts_on_hub, hub_torque, law_torque
-from flexarm_env.identify.refit import best_refit, refit
-from flexarm_env.identify.screen import first_start
+from flexarm_env.identify.calibrate.calibrator import Calibrator
+from flexarm_env.identify.explain.hub_torque import acts_on_hub, hub_torque, law_torque
+from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.select.starts import first_start
 
 Floats = NDArray[np.float64]
 
-#: Least coefficient of a term, of columns and a residual of unit length; least share of the residual's power of an effect.
+#: Smallest coefficient of a term, for columns and a residual of unit length; smallest share of an effect in its power.
 THRESHOLD, LEAST_SHARE = 0.1, 0.05
-#: The hub moves above this share of its largest speed; every so many samples are taken.
+#: Share of the largest speed above which the hub counts as moving; every so many samples are taken.
 MOVING, EVERY = 0.05, 5
 CYCLES, FALLOFFS, WARMING = range(1, 13), (0.1, 0.2, 0.4), (2.0, 5.0)
-#: What the fit of the constants could take over.
+#: Terms that a fit of the constants can absorb.
 CONSTANTS = ("viscous", "coulomb")
 
 
 def terms(angle: Floats, speed: Floats, time: Floats) -> Iterator[tuple[str, Floats]]:
-    """Yield the name of an effect and one of the shapes that its torque may have (samples,)."""
+    """Yield the name of an effect and one candidate shape of its torque (samples,)."""
     against = -np.sign(speed)
     yield "viscous", -speed
     yield "coulomb", against
@@ -54,7 +54,7 @@ def terms(angle: Floats, speed: Floats, time: Floats) -> Iterator[tuple[str, Flo
 
 
 def sparse_effects(arm: Arm, recordings: Sequence[Recording]) -> list[str]:
-    """Return the effects whose terms stay, the one that explains most of what the arm does not first."""
+    """Select the effects with remaining terms, sorted by the share of the residual torque that they explain."""
     motions = hub_torque(arm, recordings)
     time, angle, speed, torque = (np.concatenate([getattr(m, k) for m in motions]) for k in ("time", "angle", "speed", "torque"))
     moves = np.flatnonzero(np.abs(speed) > MOVING * np.abs(speed).max())[::EVERY]
@@ -63,7 +63,7 @@ def sparse_effects(arm: Arm, recordings: Sequence[Recording]) -> list[str]:
     left = torque - law_torque(arm, own, angle, speed, time)
     names, columns = zip(*terms(angle, speed, time), strict=True)
     library = np.stack([column / np.linalg.norm(column) for column in columns], axis=1)
-    with warnings.catch_warnings():  # that no term stays is an answer
+    with warnings.catch_warnings():  # an empty set of terms is a valid answer
         warnings.filterwarnings("ignore", "Sparsity parameter is too big", UserWarning)
         found = STLSQ(threshold=THRESHOLD).fit(library, (left / np.linalg.norm(left))[:, None]).coef_[0]
     shares = {name: 0.0 for name in names if name not in CONSTANTS}
@@ -75,13 +75,13 @@ def sparse_effects(arm: Arm, recordings: Sequence[Recording]) -> list[str]:
 
 
 def sindy_on_residuals(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
-    """Name the effects that SINDy finds in what the refitted arm leaves, and refit the arm with the first three."""
-    nominal, data = prepare(arm, recordings)
-    base = found = best_refit(nominal, data)
+    """Name the effects that SINDy finds in the refitted arm's residual torque, and refit the arm with the first three."""
+    calibrator = Calibrator(*prepare(arm, recordings))
+    base = found = calibrator.constants()
     effects = sparse_effects(base.arm, recordings)[:3]
     if effects:
         with_them = base.arm
         for name in effects:
-            with_them = with_them.with_effect(name, **first_start(with_them, name, data.scales))
-        found = refit(with_them, nominal, data)
-    return answer(effects, nominal, base, found, data)
+            with_them = with_them.with_effect(name, **first_start(with_them, name, calibrator.dataset))
+        found = calibrator.calibrate(with_them)
+    return answer(effects, calibrator, base, found)

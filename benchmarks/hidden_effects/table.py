@@ -8,12 +8,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from benchmarks.hidden_effects.score import Figure, figures, wrong
+from benchmarks.hidden_effects.score import Figure, confusions, figures
 from flexarm_env.files import write_whole
 
 
 def markdown(found: Sequence[Figure], mistakes: Sequence[tuple[str, str, int]], made: str) -> str:
-    """Return the table of figures against goals, and that of what was taken for what."""
+    """Format the table of figures against goals, and the table of confusions."""
     lines = ["# Hidden effects", "", made, "", "| | goal | measured | |", "|---|---|---:|---|"]
     lines += [f"| {f.what} | {f.goal} | {f.text} | {f.judged} |" for f in found]
     lines += ["", "Single effects that were not named first, and what was said instead:", ""]
@@ -25,7 +25,7 @@ def markdown(found: Sequence[Figure], mistakes: Sequence[tuple[str, str, int]], 
 def write(folder: Path, answers: Sequence[dict[str, Any]], method: str, seed: int, command: str) -> list[Figure]:
     """Write table.md and table.json into a folder, with the commits that answered; return the figures."""
     folder.mkdir(parents=True, exist_ok=True)
-    found, mistakes = figures(answers), wrong(answers)
+    found, mistakes = figures(answers), confusions(answers)
     versions, commits = (sorted({answer[key] or "unknown" for answer in answers}) for key in ("version", "commit"))
     stamp = {"command": command, "versions": versions, "commits": commits, "seed": seed, "method": method}
     made_by = f"FlexArm {', '.join(versions)}, commit {', '.join(commits)}"

@@ -1,4 +1,4 @@
-"""What a fitted value should be: the rig's settings in the words of arm files."""
+"""True values of fitted parameters: the rig's settings, by the names of arm files."""
 
 from __future__ import annotations
 
@@ -57,12 +57,12 @@ CONSTANTS = {
 
 
 def parameters(effect: str, settings: dict[str, float]) -> dict[str, float]:
-    """Return the true parameters of an effect, those that have one name on both sides."""
+    """Convert the rig's settings to the true parameters of an effect, as far as the two correspond."""
     return {key: value(settings) for key, value in PARAMETERS.get(effect, {}).items()}
 
 
 def covered(case: dict[str, Any], found: dict[str, Any]) -> Iterator[tuple[str, bool]]:
-    """Yield every value of a right diagnosis whose truth is known, and whether its interval holds it."""
+    """Yield every value of a right diagnosis with a known truth, and whether its interval contains that truth."""
     for candidate in found["ranking"]:
         if candidate["accepted"] and candidate["effect"] in case["effects"]:
             for key, value in parameters(candidate["effect"], case["settings"]).items():

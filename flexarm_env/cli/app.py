@@ -187,9 +187,9 @@ def demo(
 ) -> None:
     """Find the effect that is hidden in three recordings, add it, and draw how the error falls."""
     arguments.check(json, pictures=True)
-    from flexarm_env.demo.story import tell
+    from flexarm_env.demo.story import run_demo
 
-    if not tell(output, seed, json):
+    if not run_demo(output, seed, json):
         raise typer.Exit(1)
 
 

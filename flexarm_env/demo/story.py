@@ -1,4 +1,4 @@
-"""The loop on the shipped recordings: compare, diagnose, add, compare; numbers and pictures into a folder."""
+"""The loop on the shipped recordings: compare, diagnose, add, compare. Numbers and pictures go to a folder."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from flexarm_env.terminal.provenance import provenance
 
 ARM = "thesis-fem"
 JOBS = 2
-#: What an independent simulator was told to hide in the recordings; read only after the diagnosis, for the last line.
+#: The effect that the independent simulator put into the recordings; read only after the diagnosis, for the last line.
 HIDDEN = ("backlash", "gap", 0.06, "rad")
 
 
-def tell(output: Path, seed: int = 0, json: Path | None = None) -> bool:
+def run_demo(output: Path, seed: int = 0, json: Path | None = None) -> bool:
     """Run the demonstration; return whether an effect was found.
 
     Args:
-        output: folder for pictures, page and numbers; it is made.
-        seed: of everything random.
-        json: where else the numbers go.
+        output: folder for pictures, page and numbers; it is created.
+        seed: of all random numbers.
+        json: a second file for the numbers.
 
     Raises:
         InputError: if the folder cannot be made or written.
@@ -49,7 +49,7 @@ def tell(output: Path, seed: int = 0, json: Path | None = None) -> bool:
         tables.show(out, tables.steps(*_steps(added)))
         _heading(out, "flexarm compare RECORDINGS --arm THE-NEW-ARM", words.comparison(after))
         content |= {"add": plain_data.of_addition(added), "compare_after": plain_data.of_comparison(after)}
-    out.print(Text(_resolve(added)))
+    out.print(Text(_compare_with_truth(added)))
     origin = provenance("demo", ARM, recordings, seed)
     page = output / "report.html"
     command = {"command_line": f"flexarm diagnose flexarm_env/demo --arm {ARM} --seed {seed}"}
@@ -70,15 +70,15 @@ def _steps(added: Addition) -> tuple[list[tuple[str, float]], list[tuple[str, fl
     return words.steps_of(added.error, [added.effect]), words.steps_of(added.free_run, [added.effect])
 
 
-def _resolve(added: Addition | None) -> str:
-    """Say what was hidden, beside what was found."""
+def _compare_with_truth(added: Addition | None) -> str:
+    """Write the hidden effect beside the estimate."""
     effect, parameter, size, unit = HIDDEN
-    made = "Hidden in the recordings, by a simulator that shares no code with this"
-    hidden = f"{made}: {effect}, {parameter} = {size} {unit}."
+    made = "The hidden effect, put in by a simulator that shares no code with this"
+    hidden = f"{made}, was {effect}, {parameter} = {size} {unit}."
     found = None
     if added is not None and added.effect == effect:
         found = next((e for e in added.estimates if e.path == f"effects.{effect}.{parameter}"), None)
-    return hidden if found is None else f"{hidden} Found: {words.value_of(found)}."
+    return hidden if found is None else f"{hidden} The estimate is {words.value_of(found)}."
 
 
 def _draw(output: Path, before: Comparison, after: Comparison, diagnosis: Diagnosis) -> list[Path]:

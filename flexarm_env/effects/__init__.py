@@ -1,4 +1,4 @@
-"""The catalogue of effects: one file each in this folder, and those that others register."""
+"""The catalogue of effects: one file each in this folder, and those registered by other packages."""
 
 from __future__ import annotations
 

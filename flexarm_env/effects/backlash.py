@@ -1,4 +1,4 @@
-"""Play between the teeth of the gears: motor and hub part within the gap."""
+"""Play between the teeth of the gears: motor and hub are decoupled within the gap."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from flexarm_env.plant.structure import Structure
 
 
 class Backlash(Effect):
-    """Play between the teeth of the gears: motor and hub part within the gap."""
+    """Play between the teeth of the gears: motor and hub are decoupled within the gap."""
 
     name = "backlash"
     equation = "no torque through the gears while |θ_m − Nθ| < gap/2"
@@ -27,5 +27,5 @@ class Backlash(Effect):
 
     @classmethod
     def starts(cls) -> list[dict[str, float]]:
-        """A narrow, a middling and a wide gap: the error has valleys in between."""
+        """A narrow and a wide gap: the error has local minima in between."""
         return [{"gap": gap} for gap in (0.02, 0.05)]

@@ -1,4 +1,4 @@
-"""Gravity on an arm whose axis is not quite upright."""
+"""Gravity on an arm with a tilted axis."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from flexarm_env.parameters import Parameter
 
 
 class BaseTilt(Effect):
-    """Gravity on an arm whose axis is not quite upright: it turns the hub, and bends the beam by its weight and the payload's."""
+    """Gravity on an arm with a tilted axis: it turns the hub, and bends the beam by its weight and the payload's."""
 
     name = "base_tilt"
     equation = "τ = g sin(θ − θ₀)"

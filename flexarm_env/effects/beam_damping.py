@@ -15,7 +15,7 @@ class BeamDamping(Effect):
     name = "beam_damping"
     equation = "B = t_d K of the beam"
     parameters: ClassVar = {"time": Parameter("s", 0.0, 1.0, 0.002, null=0.0, meaning="t_d, ratio of damping to stiffness")}
-    looks_like = "strain rings down faster than the model says, the more the higher the mode, also while the hub is stuck"
+    looks_like = "strain rings down faster than the model predicts, the more the higher the mode, also while the hub is stuck"
     confused_with = ("air_drag", "strain_lag")
     source = "thesis Figure 3.9; Clough and Penzien, Dynamics of Structures, section 17"
     needs = ("beam",)

@@ -1,4 +1,4 @@
-"""The voltage that the brushes take, where an amplifier sets the voltage for a current and does not make up for it."""
+"""Voltage drop at the brushes, not compensated by an amplifier that sets the voltage for a current."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from flexarm_env.parameters import Parameter
 
 
 class BrushDrop(Effect):
-    """The voltage that the brushes take, where an amplifier sets the voltage for a current and does not make up for it.
+    """Voltage drop at the brushes, not compensated by an amplifier that sets the voltage for a current.
 
     Under a voltage command the drop acts as Coulomb friction of N kφ V_b / R does.
     """

@@ -1,4 +1,4 @@
-"""Which effects exist: those of this folder, of the entry-point group `flexarm_env.effects`, and files that a person names."""
+"""The catalogue: effects of this folder, of the entry-point group `flexarm_env.effects`, and of files named by the user."""
 
 from __future__ import annotations
 
@@ -51,14 +51,14 @@ class Catalogue(Mapping[str, type[Effect]]):
         return len(self._effects)
 
     def extended(self, *effects: type[Effect]) -> Catalogue:
-        """Return a catalogue with more effects; one of the same name takes the place of the old."""
+        """Extend the catalogue by effects; one of the same name replaces the old."""
         names = {effect.name for effect in effects}
         return Catalogue([e for e in self._effects.values() if e.name not in names] + list(effects))
 
 
 @lru_cache(maxsize=1)
 def catalogue() -> Catalogue:
-    """Return the effects of this folder and of installed packages that register some."""
+    """Collect the effects of this folder and of installed packages that register some."""
     package = importlib.import_module("flexarm_env.effects")
     found = []
     for module in pkgutil.iter_modules(package.__path__):
@@ -77,7 +77,7 @@ def _effects_in(module: object) -> list[type[Effect]]:
 
 
 def load_effect(spec: str) -> type[Effect]:
-    """Load a person's own effect from "FILE.py:Name". This runs the file: name only files that you trust.
+    """Load a user's effect from "FILE.py:Name". This runs the file: name only files that you trust.
 
     Raises:
         InputError: for a file or class that is not there, or a class that is no effect.
@@ -106,7 +106,7 @@ def load_effect(spec: str) -> type[Effect]:
 
 
 def _with_sources(effect: type[Effect]) -> type[Effect]:
-    """Return an effect whose laws carry the text that the kernel is made of: where they are unpickled no file is known."""
+    """Attach the source text to an effect's laws, from which the kernel is built: once unpickled they have no file."""
     for function in filter(None, map(effect.port, LAW_PORTS)):
         vars(function)["source"] = inspect.getsource(function)
     return effect

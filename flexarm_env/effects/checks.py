@@ -1,4 +1,4 @@
-"""Whether a class is an effect that an arm can have."""
+"""Validation of effect classes."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from flexarm_env.units import check_unit
 
 
 def checked(effect: type[Effect]) -> type[Effect]:
-    """Return the effect if it is whole.
+    """Validate an effect and return it.
 
     Raises:
-        InputError: for what it lacks, or what cannot be as it is.
+        InputError: for a missing or invalid attribute or port.
     """
     where = f"effect {effect.__name__}"
     for attribute in ("name", "equation", "parameters", "looks_like"):

@@ -30,7 +30,7 @@ class Cogging(Effect):
 
     @classmethod
     def starts(cls) -> list[dict[str, float]]:
-        """Cycle numbers on a grid, with two phases: the error has a valley at each."""
+        """Grid of cycle numbers, with two phases: the error has a local minimum at each."""
         return [
             {"amplitude": 0.05, "cycles": cycles, "phase": phase}
             for cycles in (3.0, 4.5, 6.0, 7.5, 9.0, 10.5, 12.0, 15.0, 18.0, 21.0, 24.0, 30.0, 36.0)

@@ -1,4 +1,4 @@
-"""An amplifier whose current follows the command with a lag."""
+"""First-order lag of the amplifier's current behind the command."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from flexarm_env.plant.structure import Structure
 
 
 class CurrentLag(Effect):
-    """An amplifier whose current follows the command with a lag."""
+    """First-order lag of the amplifier's current behind the command."""
 
     name = "current_lag"
     equation = "t_l di/dt + i = command"
     parameters: ClassVar = {"time": Parameter("s", 0.0, 1.0, 0.01, null=0.0, meaning="t_l, time constant")}
-    looks_like = "everything follows fast commands late and rounded"
+    looks_like = "all signals follow fast commands late and smoothed"
     confused_with = ("input_delay", "time_offset", "rate_limit")
 
     @staticmethod

@@ -1,4 +1,4 @@
-"""An amplifier or a valve that does not answer small commands."""
+"""An amplifier or a valve that does not respond to small commands."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from flexarm_env.parameters import Parameter
 
 
 class DeadZone(Effect):
-    """An amplifier or a valve that does not answer small commands."""
+    """An amplifier or a valve that does not respond to small commands."""
 
     name = "dead_zone"
     equation = "i = command ∓ w beyond ±w, else 0"

@@ -1,4 +1,4 @@
-"""Gears, belt or coupling that wind up under torque."""
+"""Compliance of gears, belt or coupling under torque."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from flexarm_env.plant.structure import Structure
 
 
 class GearCompliance(Effect):
-    """Gears, belt or coupling that wind up under torque."""
+    """Compliance of gears, belt or coupling under torque."""
 
     name = "gear_compliance"
     equation = "τ = k (ε + T dε/dt), ε = θ_m/N − θ"
@@ -19,7 +19,7 @@ class GearCompliance(Effect):
         "stiffness": Parameter("N*m/rad", 0.01, math.inf, 200.0, null=math.inf, meaning="k, arm side"),
         "damping_time": Parameter("s", 1e-6, 1.0, 5e-4, meaning="T, damping of the windup over k"),
     }
-    looks_like = "motor speed leads the arm by a fast vibration of its own"
+    looks_like = "motor speed shows a fast vibration against the arm"
     confused_with = ("backlash", "beam_damping", "root_compliance", "higher_modes")
     source = "Spong, J. Dyn. Syst. Meas. Control 109 (1987) 310"
     needs = ("motor_speed", "motor_inertia", "hub_inertia")
@@ -32,5 +32,5 @@ class GearCompliance(Effect):
 
     @classmethod
     def starts(cls) -> list[dict[str, float]]:
-        """Gears that ring, and damped ones."""
+        """Weakly and strongly damped gears."""
         return [{"stiffness": 200.0, "damping_time": time} for time in (5e-4, 5e-3)]

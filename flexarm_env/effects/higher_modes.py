@@ -17,7 +17,7 @@ class HigherModes(Effect):
     parameters: ClassVar = {
         "elements": Parameter("", 0, 16, 4, null=0, meaning="finite elements in place of those of the arm file")
     }
-    looks_like = "strain and speed ring at frequencies that the model puts elsewhere or lacks"
+    looks_like = "strain and speed ring at frequencies that the model misplaces or lacks"
     confused_with = ("root_compliance", "tip_inertia", "gear_compliance")
     source = "thesis section 3.1; notes on the frequencies of one element"
     needs = ("beam",)

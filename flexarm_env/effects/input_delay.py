@@ -1,4 +1,4 @@
-"""A command that acts late: computing time, a bus."""
+"""Delay of the command, as from computing time or a bus."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from flexarm_env.plant.structure import Structure
 
 
 class InputDelay(Effect):
-    """A command that acts late: computing time, a bus."""
+    """Delay of the command, as from computing time or a bus."""
 
     name = "input_delay"
     equation = "i(t) = command(t − d)"
     parameters: ClassVar = {"delay": Parameter("s", 0.0, 0.5, 0.006, null=0.0, meaning="d")}
-    looks_like = "all signals answer late by the same time, in full shape"
+    looks_like = "all signals respond late by the same time, undistorted"
     confused_with = ("time_offset", "current_lag")
 
     @staticmethod
@@ -25,5 +25,5 @@ class InputDelay(Effect):
 
     @classmethod
     def starts(cls) -> list[dict[str, float]]:
-        """A few delays: the error has a valley at each period of the beam."""
+        """A few delays: the error has a local minimum at each period of the beam."""
         return [{"delay": delay} for delay in (0.003, 0.01, 0.03)]

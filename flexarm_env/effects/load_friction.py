@@ -15,12 +15,12 @@ class LoadFriction(Effect):
     equation = "T = c |T_gears|"
     parameters: ClassVar = {"coefficient": Parameter("", 0.0, 0.95, 0.1, null=0.0, meaning="c, of the torque in the gears")}
     modifies = "coulomb"
-    looks_like = "less torque comes through, by a share of it: accelerating and braking both fall short"
+    looks_like = "a share of the torque is lost: accelerating and braking both fall short"
     confused_with = ("coulomb", "viscous")
     source = "Bittencourt and Gunnarsson, J. Dyn. Syst. Meas. Control 134 (2012) 051013"
     varies = True
 
     @staticmethod
     def friction(load, coefficient):
-        """Return c |T_gears|."""
+        """Multiply the load of the gears by c."""
         return coefficient * abs(load)

@@ -32,7 +32,7 @@ class PositionFriction(Effect):
 
     @classmethod
     def starts(cls) -> list[dict[str, float]]:
-        """Cycle numbers on a grid, with two phases: the error has a valley at each."""
+        """Grid of cycle numbers, with two phases: the error has a local minimum at each."""
         return [
             {"amplitude": 0.05, "cycles": cycles, "phase": phase}
             for cycles in (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0)

@@ -1,4 +1,4 @@
-"""A potentiometer whose track is not even, or that sits off the axis."""
+"""Nonlinearity of a potentiometer with an uneven track or mounted off the axis."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from flexarm_env.parameters import Parameter
 
 
 class PotNonlinearity(Effect):
-    """A potentiometer whose track is not even, or that sits off the axis."""
+    """Nonlinearity of a potentiometer with an uneven track or mounted off the axis."""
 
     name = "pot_nonlinearity"
     equation = "y = θ + a sin(nθ + φ)"
@@ -19,7 +19,7 @@ class PotNonlinearity(Effect):
         "cycles": Parameter("1/rad", 0.3, 30.0, 2.0, meaning="n, cycles per radian of the arm times 2π"),
         "phase": Parameter("rad", -6.3, 6.3, 0.0, meaning="φ, at angle zero"),
     }
-    looks_like = "angle alone is off by what repeats with the angle; speed and strain fit"
+    looks_like = "angle alone has an error that is periodic in the angle; speed and strain fit"
     confused_with = ("sensor_offset",)
     needs = ("arm_angle",)
     reads = ("arm_angle",)
@@ -31,7 +31,7 @@ class PotNonlinearity(Effect):
 
     @classmethod
     def starts(cls) -> list[dict[str, float]]:
-        """Cycle numbers on a grid, with two phases: the error has a valley at each."""
+        """Grid of cycle numbers, with two phases: the error has a local minimum at each."""
         return [
             {"amplitude": 0.02, "cycles": cycles, "phase": phase}
             for cycles in (1.0, 2.0, 3.0, 4.5, 6.0, 9.0, 12.0)

@@ -14,7 +14,7 @@ class Presliding(Effect):
 
     name = "presliding"
     equation = "dT/dθ = (1 − T/T_c sgn ω) / c"
-    parameters: ClassVar = {"compliance": Parameter("rad/N/m", 0.0, 1.0, 2e-3, null=0.0, meaning="c, of friction that stands")}
+    parameters: ClassVar = {"compliance": Parameter("rad/N/m", 0.0, 1.0, 2e-3, null=0.0, meaning="c, of friction at rest")}
     modifies = "coulomb"
     looks_like = "the hub rings where it should stick, and creeps back a little after it has stopped"
     confused_with = ("gear_compliance", "stiction")
@@ -22,9 +22,9 @@ class Presliding(Effect):
 
     @staticmethod
     def presliding(before, travel, level, compliance):
-        """Return what is left after some travel of the friction before, on its way to the level of sliding."""
+        """Relax the friction before the travel towards its level while sliding."""
         if level <= 0.0:
             return 0.0
         sliding = math.copysign(level, travel)
-        # what slides within 4e-5 rad is stiffer than gears: as good as rigid, and slow to follow
+        # presliding within 4e-5 rad is stiffer than gears: practically rigid, and slow to integrate
         return sliding + (before - sliding) * math.exp(-abs(travel) / max(compliance * level, 4e-5))

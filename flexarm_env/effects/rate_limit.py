@@ -1,4 +1,4 @@
-"""An amplifier whose output cannot change faster than a limit."""
+"""Limit on the rate of change of the amplifier's output."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from flexarm_env.parameters import Parameter
 
 
 class RateLimit(Effect):
-    """An amplifier whose output cannot change faster than a limit."""
+    """Limit on the rate of change of the amplifier's output."""
 
     name = "rate_limit"
     equation = "|di/dt| ≤ r"
     parameters: ClassVar = {
         "rate": Parameter("1/s", 0.0, math.inf, 200.0, null=math.inf, meaning="r, in A/s or V/s", of_command=True)
     }
-    looks_like = "steps of the command come as ramps, small changes come through"
+    looks_like = "steps of the command become ramps, small changes pass unchanged"
     confused_with = ("current_lag", "saturation")
     source = "thesis section 2.3"
 

@@ -1,4 +1,4 @@
-"""A clamp at the hub that gives way to the beam's bending moment."""
+"""Compliance of the clamp at the hub under the beam's bending moment."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from flexarm_env.plant.structure import Structure
 
 
 class RootCompliance(Effect):
-    """A clamp at the hub that gives way to the beam's bending moment."""
+    """Compliance of the clamp at the hub under the beam's bending moment."""
 
     name = "root_compliance"
     equation = "root slope = C · moment"

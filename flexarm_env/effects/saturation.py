@@ -1,4 +1,4 @@
-"""An amplifier that gives no more than a limit."""
+"""Limit on the amplifier's output."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from flexarm_env.parameters import Parameter
 
 
 class Saturation(Effect):
-    """An amplifier that gives no more than a limit."""
+    """Limit on the amplifier's output."""
 
     name = "saturation"
     equation = "i = min(max(command, −limit), limit)"
     parameters: ClassVar = {
         "limit": Parameter("", 0.0, math.inf, 3.0, null=math.inf, meaning="largest output [A or V]", of_command=True)
     }
-    looks_like = "the answer to large commands is cut off, to small ones right"
+    looks_like = "the response to large commands is cut off, to small ones right"
     confused_with = ("rate_limit", "current_lag")
 
     @staticmethod
@@ -27,5 +27,5 @@ class Saturation(Effect):
 
     @classmethod
     def starts(cls) -> list[dict[str, float]]:
-        """Limits that cut off the peaks of commands of 5 A, some much, some little: above them there is no slope to follow."""
+        """Limits from slightly to far below peaks of 5 A: above the peaks the error has no gradient."""
         return [{"limit": limit} for limit in (4.5, 4.85, 4.0, 3.5, 3.0, 2.5)]

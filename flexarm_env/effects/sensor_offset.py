@@ -1,4 +1,4 @@
-"""Readings that are not zero where the quantity is."""
+"""Constant offsets of the sensors' readings."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from flexarm_env.plant.structure import Structure
 
 
 class SensorOffset(Effect):
-    """Readings that are not zero where the quantity is."""
+    """Constant offsets of the sensors' readings."""
 
     name = "sensor_offset"
     equation = "y = y_true + offset"
@@ -21,7 +21,7 @@ class SensorOffset(Effect):
         "strain_base": Parameter("V", -1e3, 1e3, 0.05, null=0.0, meaning="offset of the gage at the root"),
         "tip_deflection": Parameter("m", -10.0, 10.0, 0.005, null=0.0, meaning="offset of the tip's sensor"),
     }
-    looks_like = "a signal's error is a constant that nothing drives"
+    looks_like = "a signal's error is constant, independent of motion and command"
     confused_with = ("constant_torque",)
 
     @staticmethod

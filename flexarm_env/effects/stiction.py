@@ -17,7 +17,7 @@ class Stiction(Effect):
         "extra": Parameter("N*m", 0.0, 1e4, 0.05, null=0.0, spread=0.5, meaning="static less sliding friction, arm side")
     }
     modifies = "coulomb"
-    looks_like = "the hub breaks away later than sliding friction says, and then jumps"
+    looks_like = "the hub breaks away later than sliding friction predicts, and then jumps"
     confused_with = ("stribeck", "coulomb", "dead_zone")
     source = "thesis section 2.2 and Table A.1"
     motor_share = "motor_stiction_share"

@@ -1,4 +1,4 @@
-"""Strain gages whose zero creeps away while they and their amplifier warm up."""
+"""Drift of the strain gages' zero while they and their amplifier warm up."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from flexarm_env.parameters import Parameter
 
 
 class StrainDrift(Effect):
-    """Strain gages whose zero creeps away while they and their amplifier warm up."""
+    """Drift of the strain gages' zero while they and their amplifier warm up."""
 
     name = "strain_drift"
     equation = "y = strain + r t"

@@ -1,4 +1,4 @@
-"""A tachometer whose reading swells and fades once in a turn of the motor, as one that sits askew does."""
+"""Ripple of the tachometer's gain once per turn of the motor, as from a misaligned shaft."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from flexarm_env.parameters import Parameter
 
 
 class TachRipple(Effect):
-    """A tachometer whose reading swells and fades once in a turn of the motor, as one that sits askew does."""
+    """Ripple of the tachometer's gain once per turn of the motor, as from a misaligned shaft."""
 
     name = "tach_ripple"
     equation = "y = ω (1 + a sin(θ_m + φ))"
@@ -30,5 +30,5 @@ class TachRipple(Effect):
 
     @classmethod
     def starts(cls) -> list[dict[str, float]]:
-        """Two phases: the other two are these turned round."""
+        """Two phases; the opposite ones act with the opposite sign."""
         return [{"amplitude": 0.05, "phase": phase} for phase in (0.0, 1.57)]

@@ -1,4 +1,4 @@
-"""Two clocks: measurements stamped later, or earlier, than the commands."""
+"""Offset between two clocks: measurements stamped later, or earlier, than the commands."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from flexarm_env.plant.structure import Structure
 
 
 class TimeOffset(Effect):
-    """Two clocks: measurements stamped later, or earlier, than the commands."""
+    """Offset between two clocks: measurements stamped later, or earlier, than the commands."""
 
     name = "time_offset"
     equation = "y(t) = y_true(t − d)"
@@ -20,7 +20,7 @@ class TimeOffset(Effect):
 
     @staticmethod
     def structure(structure: Structure, offset: float) -> None:
-        """Shift the command against the measurements: in a replay the same as shifting these."""
+        """Shift the command, which in a replay is the same as shifting the measurements."""
         structure.input_delay += offset
 
     @classmethod

@@ -17,7 +17,7 @@ class Viscous(Effect):
     parameters: ClassVar = {
         "coefficient": Parameter("N*m*s", 0.0, 1e5, 0.05, null=0.0, spread=0.5, meaning="friction per speed, arm side")
     }
-    looks_like = "the hub coasts down along an exponential; what the model lacks in torque grows with speed, through zero"
+    looks_like = "the hub coasts down along an exponential; missing torque grows with speed, through zero"
     confused_with = ("air_drag", "asymmetric_viscous")
     source = "thesis eqs. 2.1 and 3.9"
 

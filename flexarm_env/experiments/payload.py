@@ -1,4 +1,4 @@
-"""The known payload of a recording: a mass at the tip, besides the masses that the arm has there."""
+"""The payload that a recording states: a known mass at the tip, beside the arm's own."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from flexarm_env.plant.plant import Plant
 from flexarm_env.recordings.recording import Recording
 
 
-def payload_of(recording: Recording) -> float:
-    """Read the payload of a recording [kg] from its conditions, 0 if none."""
+def stated_payload(recording: Recording) -> float:
+    """Read the payload that a recording states [kg], 0 if none."""
     return recording.conditions.get("payload", 0.0)
 
 
-def check_load(arm: Arm, recording: Recording) -> None:
+def check_payload(arm: Arm, recording: Recording) -> None:
     """Refuse a payload that the arm has no tip to carry.
 
     Raises:
         InputError: for a payload and an arm without a beam.
     """
-    payload = payload_of(recording)
+    payload = stated_payload(recording)
     if payload > 0.0 and not arm.has("beam"):
         raise InputError(
             f"{recording.name} states a payload of {payload:g} kg, but arm '{arm.name}' has no beam to carry it; "
@@ -29,14 +29,14 @@ def check_load(arm: Arm, recording: Recording) -> None:
         )
 
 
-def loaded(arm: Arm, payload: float) -> Arm:
-    """Add a payload [kg] to the tip of an arm, besides a tip mass and a payload of its own."""
+def with_payload(arm: Arm, payload: float) -> Arm:
+    """Add a payload [kg] at the tip, beside a tip mass and a payload of the arm's own."""
     if payload == 0.0:
         return arm
     own = arm.effects["payload"]["mass"] if "payload" in arm.effects else 0.0
     return arm.with_effect("payload", mass=own + payload)
 
 
-def loaded_plants(arm: Arm, payloads: Iterable[float], interval: float) -> dict[float, Plant]:
+def plants_by_payload(arm: Arm, payloads: Iterable[float], interval: float) -> dict[float, Plant]:
     """Build a plant of the arm, sampled every `interval` [s], for each payload [kg]."""
-    return {payload: loaded(arm, payload).plant(interval) for payload in dict.fromkeys(payloads)}
+    return {payload: with_payload(arm, payload).plant(interval) for payload in dict.fromkeys(payloads)}

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError, did_you_mean
-from flexarm_env.experiments.payload import check_load, loaded, payload_of
+from flexarm_env.experiments.payload import check_payload, stated_payload, with_payload
 from flexarm_env.experiments.plans import EXPERIMENTS, plan_of, random_stream
 from flexarm_env.experiments.rig import Rig
 from flexarm_env.recordings.recording import Recording
@@ -84,8 +84,8 @@ def _replay(arm: Arm, source: Recording, seed: int, noise: bool, name: str) -> R
         raise InputError(f"{source.name}: holds {source.input_kind}, but arm '{arm.name}' is driven by {arm.input}")
     draws = _noise(arm, len(source), seed, source.name) if noise else None
     even, interval = _sampling(source.time)
-    check_load(arm, source)
-    rig = Rig(loaded(arm, payload_of(source)), 1.0 / interval, len(source), draws)
+    check_payload(arm, source)
+    rig = Rig(with_payload(arm, stated_payload(source)), 1.0 / interval, len(source), draws)
     readings = rig.replay(source.command, () if even else (np.diff(source.time),))
     conditions = {key: value for key, value in source.conditions.items() if key == "payload"}
     return _recording(arm, name, source.time, source.command, readings, source.reference, conditions)

@@ -1,4 +1,4 @@
-"""Refit an arm's constants, and add one effect to it."""
+"""Calibrate an arm's constants, and add one effect to it."""
 
 from __future__ import annotations
 
@@ -7,40 +7,67 @@ from collections.abc import Sequence
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
-from flexarm_env.identify.data import prepare
-from flexarm_env.identify.least_squares import in_threads
+from flexarm_env.identify.calibrate.calibration import Calibration
+from flexarm_env.identify.calibrate.calibrator import Calibrator
+from flexarm_env.identify.calibrate.estimate import Estimate
+from flexarm_env.identify.calibrate.intervals import estimates
+from flexarm_env.identify.calibrate.parameters import free_parameters
 from flexarm_env.identify.origin import with_origin
-from flexarm_env.identify.problem import score
-from flexarm_env.identify.refit import Progress, best_refit, estimates, with_all
-from flexarm_env.identify.results import Addition, Estimate, Fit
-from flexarm_env.identify.screen import refit_effect
-from flexarm_env.identify.split import refit_and_split
+from flexarm_env.identify.progress import Progress, Report
+from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.replay.hold_out import hold_out_late
+from flexarm_env.identify.results import Addition, Fit
+from flexarm_env.identify.select.screen import attempt
+from flexarm_env.identify.select.signatures import baselines, signatures
+from flexarm_env.identify.settings import SETTINGS, Settings
+from flexarm_env.identify.workers import Workers
 from flexarm_env.recordings.recording import Recording
 
 
-def fit(arm: Arm, recordings: Sequence[Recording], progress: Progress | None = None, seed: int = 0, jobs: int = 2) -> Fit:
-    """Refit the constants of an arm.
+def fit(
+    arm: Arm,
+    recordings: Sequence[Recording],
+    progress: Report | None = None,
+    seed: int = 0,
+    jobs: int = 2,
+    settings: Settings = SETTINGS,
+) -> Fit:
+    """Calibrate the constants of an arm.
 
     Args:
         arm: the model, whose values are the centres of the priors.
         recordings: of the machine; the last part of each is held out.
-        progress: called with the share done and what is being done.
+        progress: called with the share done and a text.
         seed: recorded with the result.
         jobs: threads.
+        settings: numbers of the method.
 
     Raises:
-        InputError: for recordings that do not fit the arm.
+        InputError: for recordings that do not fit the arm, and for an arm that leaves nothing to fit.
+
+    Example:
+        >>> from flexarm_env import Arm, fit, simulate
+        >>> arm = Arm.load("cu-rigid")
+        >>> machine = arm.with_values({"hub.inertia": 1.1 * arm.value("hub.inertia")})
+        >>> found = fit(arm, [simulate(machine, "pulse", duration=2.0, rate=200.0)])
+        >>> found.error["refitted"] < found.error["nominal"]
+        True
     """
-    began = time.perf_counter()
-    say = progress or (lambda done, text: None)
-    nominal, data = prepare(arm, recordings)
-    say(0.05, "refitting the constants")
-    with in_threads(jobs):
-        found = best_refit(nominal, data)
-        before, after = score(nominal, data), score(found.arm, data)
-        final = with_all(found, nominal, data)
+    began, say = time.perf_counter(), Progress.to(progress)
+    nominal, dataset = prepare(arm, recordings, settings)
+    if not free_parameters(nominal, nominal, dataset):
+        raise InputError(
+            f"arm '{arm.name}' leaves nothing to fit: every constant is fixed, known exactly or 0; "
+            "take names out of `fixed`, or add an effect with `flexarm add`"
+        )
+    calibrator = Calibrator(nominal, dataset, Workers(jobs))
+    say.at(0.0, "refitting the constants")
+    with calibrator.workers.threads():
+        found = calibrator.constants()
+        before, after = calibrator.score(nominal), calibrator.score(found.arm)
+        final = calibrator.on_everything(found)
         values = estimates(final, nominal)
-    say(1.0, "done")
+    say.at(1.0, "done")
     return Fit(
         arm=with_origin(arm, final.arm, values, recordings, "fit", seed),
         estimates=values,
@@ -51,36 +78,52 @@ def fit(arm: Arm, recordings: Sequence[Recording], progress: Progress | None = N
 
 
 def add(
-    effect: str, arm: Arm, recordings: Sequence[Recording], progress: Progress | None = None, seed: int = 0, jobs: int = 2
+    effect: str,
+    arm: Arm,
+    recordings: Sequence[Recording],
+    progress: Report | None = None,
+    seed: int = 0,
+    jobs: int = 2,
+    settings: Settings = SETTINGS,
 ) -> Addition:
-    """Add one effect to an arm and refit everything.
+    """Add one effect to an arm and calibrate everything.
 
     Args:
         effect: name of the effect.
         arm: the model.
         recordings: of the machine; the last part of each is held out.
-        progress: called with the share done and what is being done.
+        progress: called with the share done and a text.
         seed: recorded with the result.
         jobs: threads.
+        settings: numbers of the method.
 
     Raises:
         InputError: for an unknown effect, one that the arm has already or cannot have, or recordings that do not fit.
+
+    Example:
+        >>> from flexarm_env import Arm, add, simulate
+        >>> arm = Arm.load("cu-rigid")
+        >>> machine = arm.with_effect("coulomb", torque=0.05)
+        >>> found = add("coulomb", arm, [simulate(machine, "pulse", duration=2.0, rate=200.0)])
+        >>> round(found.arm.value("effects.coulomb.torque"), 2)
+        0.05
     """
-    began = time.perf_counter()
-    say = progress or (lambda done, text: None)
+    began, say = time.perf_counter(), Progress.to(progress)
     if effect in arm.effects and not arm.known[effect].absent(arm.effects[effect]):
         raise InputError(f"arm '{arm.name}' has effect '{effect}' already; `flexarm fit` refits it")
     arm.with_effect(effect)
-    nominal, data = prepare(arm.without_effect(effect), recordings)
-    say(0.05, "refitting the constants")
-    with in_threads(jobs):
-        base, data = refit_and_split(nominal, data)
-        say(0.4, f"adding {effect}")
-        found = refit_effect(effect, base, nominal, data)
-        scores = [score(a, data) for a in (nominal, base.arm, found.arm)]
-        final = with_all(found, nominal, data)
+    constants, adding = say.split(2, 3)
+    nominal, dataset = prepare(arm.without_effect(effect), recordings, settings)
+    constants.at(0.0, "refitting the constants")
+    workers = Workers(jobs)
+    with workers.threads():
+        calibrator, base = calibrate_constants(Calibrator(nominal, dataset, workers))
+        adding.at(0.0, f"adding {effect}")
+        found = calibrate_with_effect(calibrator, base, effect)
+        scores = [calibrator.score(a) for a in (nominal, base.arm, found.arm)]
+        final = calibrator.on_everything(found)
         values = _effect_first(estimates(final, nominal), effect)
-    say(1.0, "done")
+    adding.at(1.0, "done")
     names = ("nominal", "refitted", "final")
     return Addition(
         arm=with_origin(arm, final.arm, values, recordings, f"add {effect}", seed),
@@ -90,6 +133,24 @@ def add(
         free_run={name: s.free_run for name, s in zip(names, scores, strict=True)},
         seconds=time.perf_counter() - began,
     )
+
+
+def calibrate_constants(calibrator: Calibrator) -> tuple[Calibrator, Calibration]:
+    """Calibrate the constants; once more, with less held out, where what the arm lacks shows late in the recordings."""
+    found = calibrator.constants()
+    later = hold_out_late(found.arm, calibrator.dataset)
+    if later is calibrator.dataset:
+        return calibrator, found
+    calibrator = Calibrator(calibrator.nominal, later, calibrator.workers)
+    return calibrator, calibrator.constants()
+
+
+def calibrate_with_effect(calibrator: Calibrator, base: Calibration, effect: str) -> Calibration:
+    """Calibrate an arm with one effect more, from its best start beside calibrated or nominal constants."""
+    bases = baselines((base, calibrator.uncalibrated(calibrator.nominal)), calibrator.dataset)
+    trials = [attempt(b, signature) for b in bases for signature in signatures(b, effect)]
+    start = min(trials, key=lambda trial: trial.held_out).arm if trials else base.arm.with_effect(effect)
+    return calibrator.polish(calibrator.calibrate(start))
 
 
 def _effect_first(values: list[Estimate], effect: str) -> list[Estimate]:

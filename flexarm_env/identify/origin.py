@@ -1,4 +1,4 @@
-"""What a saved arm carries of how its values came about."""
+"""The origin of a saved arm's values."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ from typing import Any
 
 from flexarm_env import __version__
 from flexarm_env.arm import Arm
-from flexarm_env.identify.results import Estimate
+from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.recordings.recording import Recording
 
 
 def with_origin(
     arm: Arm, fitted: Arm, values: Sequence[Estimate], recordings: Sequence[Recording], command: str, seed: int
 ) -> Arm:
-    """Return `arm` with the values and effects of `fitted`, their intervals, and where they come from.
+    """Give `arm` the values and effects of `fitted`, their intervals, and their origin.
 
     Args:
         arm: as it came, with all its sensors.
         fitted: the same with fitted values, perhaps with fewer sensors.
         values: the fitted values.
-        recordings: what they were fitted to.
+        recordings: to which they were fitted.
         command: that made the fit.
-        seed: of everything random.
+        seed: recorded with the result.
     """
     table: dict[str, dict[str, Any]] = {e.path: e.as_json() for e in values}
     origin = {

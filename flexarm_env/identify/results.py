@@ -1,46 +1,21 @@
-"""What comparing, fitting, adding and diagnosing return."""
+"""Results of comparing, fitting, adding and diagnosing."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.display import Shown
-
-if TYPE_CHECKING:
-    from flexarm_env.experiments.next_run import NextRun
-    from flexarm_env.identify.hiding import Hiding
+from flexarm_env.experiments.next_run import NextRun
+from flexarm_env.identify.calibrate.estimate import Estimate
+from flexarm_env.identify.explain.detection_limits import DetectionLimit
+from flexarm_env.identify.settings import SETTINGS, Settings
 
 Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """A fitted value with its 90 % interval, in SI units.
-
-    Attributes:
-        path: where it stands in the arm file, as "beam.length".
-        value: the fitted value.
-        low: lower end of the 90 % interval.
-        high: upper end.
-        unit: of all three.
-        nominal: the value before the fit.
-    """
-
-    path: str
-    value: float
-    low: float
-    high: float
-    unit: str
-    nominal: float
-
-    def as_json(self) -> dict[str, Any]:
-        """Value, interval and unit, for machines."""
-        return {"value": self.value, "unit": self.unit, "low": self.low, "high": self.high}
 
 
 @dataclass(frozen=True)
@@ -98,7 +73,7 @@ class Comparison(Shown):
         noise: standard deviation of each signal's noise, SI units.
         error: rms over noise of everything, in windows of 1 s.
         free_run: the same, replayed once from the start.
-        notes: what the check of the recordings found, a line each (gaps, saturation, poor excitation).
+        notes: findings of the check of the recordings, a line each (gaps, saturation, poor excitation).
     """
 
     arm: Arm
@@ -169,7 +144,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Diagnosis(Shown):
-    """What is wrong with an arm, and the arm that is better.
+    """The diagnosis of an arm, and the corrected arm.
 
     Attributes:
         verdict: "nothing_missing", "parameters", "effects", "unknown" or "insufficient_data".
@@ -183,11 +158,13 @@ class Diagnosis(Shown):
         arm: the corrected arm.
         nominal: the arm that came in.
         refitted: the arm with only its constants refitted.
-        notes: a sentence each for a person: preflight findings, what drives an unexplained error, what would settle it.
-        smallest: the size of each effect that is not accepted up to which it could hide in these recordings.
+        notes: a sentence each for a person: findings on the recordings, and what is left.
+        smallest: the size of each effect that is not accepted up to which it would go undetected in these recordings.
         next_run: the input to record next, where these leave something open.
+        trace: the search, step by step, as plain data.
+        settings: numbers of the method.
         seconds: time taken.
-        seed: of everything random.
+        seed: recorded with the result.
     """
 
     verdict: str
@@ -201,13 +178,15 @@ class Diagnosis(Shown):
     nominal: Arm
     refitted: Arm
     notes: list[str]
-    seconds: float
-    seed: int
-    smallest: dict[str, Hiding] = field(default_factory=dict)
+    seconds: float = 0.0
+    seed: int = 0
+    smallest: dict[str, DetectionLimit] = field(default_factory=dict)
     next_run: NextRun | None = None
+    trace: list[dict[str, Any]] = field(default_factory=list)
+    settings: Settings = SETTINGS
 
     def as_json(self) -> dict[str, Any]:
-        """Return plain data for `--json`."""
+        """Convert to plain data for `--json`."""
         return {
             "verdict": self.verdict,
             "effects": self.effects,
@@ -227,6 +206,8 @@ class Diagnosis(Shown):
             "notes": self.notes,
             "smallest": {name: hidden.as_json() for name, hidden in self.smallest.items()},
             "next_run": self.next_run.as_json() if self.next_run else None,
+            "trace": self.trace,
+            "settings": self.settings.as_json(),
             "seconds": round(self.seconds, 1),
             "seed": self.seed,
         }

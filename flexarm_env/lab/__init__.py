@@ -1,1 +1,1 @@
-"""The loop in a browser, on loopback: drop recordings in, play with effects, diagnose, add. Needs the extra `lab`."""
+"""The loop in a browser, on loopback: drop recordings in, try effects, diagnose, add. Needs the extra `lab`."""

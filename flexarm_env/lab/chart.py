@@ -1,4 +1,4 @@
-"""A Plotly figure in the page that comes and goes without a hidden one, which Plotly would fail to resize."""
+"""A Plotly figure that is created and removed with its place: Plotly fails to resize an invisible one."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Chart:
         self._ready = False
 
     def show(self, figure: go.Figure) -> None:
-        """Draw a figure, in place of the last."""
+        """Draw a figure in place of the previous one."""
         if self._plot is None:
             with self._place:
                 self._plot = ui.plotly(figure).classes("plot")
@@ -35,6 +35,6 @@ class Chart:
         self._ready = True
 
     def clear(self) -> None:
-        """Take the figure away."""
+        """Remove the figure."""
         self._place.clear()
         self._plot, self._ready = None, False

@@ -1,4 +1,4 @@
-"""Recordings: dropped in, listed, taken out again; and the arm that they are held against."""
+"""Panel of the recordings, uploaded, listed and removed, and of the arm that is compared with them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from flexarm_env.recordings.formats.catalogue import suffixes
 from flexarm_env.recordings.recording import Recording
 
 DEMO_ARM = "thesis-fem"
-ENVELOPE = 2**16  # [bytes], of what a request has beside the files
+ENVELOPE = 2**16  # [bytes], of a request's parts beside the files
 NOT_TAKEN = f"not taken: at most {MOST_RECORDINGS} files at once, of {LARGEST_BODY // 2**20} MB together; cut them shorter"
 
 
@@ -25,10 +25,10 @@ class DataPanel:
     """The recordings of a session.
 
     Args:
-        session: whose recordings they are.
-        demo: returns the recordings of the demo.
-        say: shows what is being done.
-        complain: shows one line that says what is wrong, or takes it away.
+        session: that holds the recordings.
+        demo: reads the recordings of the demo.
+        show_status: shows the work in progress.
+        show_error: shows one line on bad input; an empty line removes it.
         changed: called when the recordings or the arm have changed.
     """
 
@@ -36,12 +36,12 @@ class DataPanel:
         self,
         session: Session,
         demo: Callable[[], list[Recording]],
-        say: Callable[[str], None],
-        complain: Callable[[str], None],
+        show_status: Callable[[str], None],
+        show_error: Callable[[str], None],
         changed: Callable[[], None],
     ) -> None:
         self.session, self.demo = session, demo
-        self.say, self.complain, self.changed = say, complain, changed
+        self.show_status, self.show_error, self.changed = show_status, show_error, changed
         html.h2("Recordings")
         self.upload = ui.upload(
             multiple=True,
@@ -49,9 +49,9 @@ class DataPanel:
             max_total_size=LARGEST_BODY - ENVELOPE,
             max_files=MOST_RECORDINGS,
             on_multi_upload=self._uploaded,
-            on_rejected=lambda: complain(NOT_TAKEN),
+            on_rejected=lambda: show_error(NOT_TAKEN),
         )
-        self.upload.on("failed", lambda: complain(NOT_TAKEN), args=[])
+        self.upload.on("failed", lambda: show_error(NOT_TAKEN), args=[])
         _drop_zone(self.upload)
         self.files = html.ul().classes("files")
         ui.button("Start with the demo", on_click=self._start_demo).props("outline")
@@ -70,15 +70,15 @@ class DataPanel:
 
     @contextlib.asynccontextmanager
     async def _reading(self) -> AsyncIterator[None]:
-        """Say that files are read, and show what came of it."""
-        self.complain("")
-        self.say("Reading and simulating …")
+        """Show a status while files are read, then the result or the error."""
+        self.show_error("")
+        self.show_status("Reading and simulating …")
         try:
             yield
         except InputError as error:
-            self.complain(str(error))
+            self.show_error(str(error))
         finally:
-            self.say("")
+            self.show_status("")
             self.changed()
 
     async def _uploaded(self, event: events.MultiUploadEventArguments) -> None:
@@ -113,9 +113,9 @@ class DataPanel:
 
 
 def _drop_zone(upload: ui.upload) -> None:
-    """Build a labelled place to drop files at, which hands them to an upload that is not shown.
+    """Build a labelled drop zone that passes its files to an invisible upload.
 
-    That upload's own button is one control within another, which a screen reader cannot tell apart.
+    The upload's own button is one control within another, and a screen reader cannot separate them.
     """
     take = f"getElement({upload.id}).$refs.qRef.addFiles"
     with html.label().classes("drop") as zone:

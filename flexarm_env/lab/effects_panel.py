@@ -1,4 +1,4 @@
-"""Effects to tick, and a slider for each of their parameters."""
+"""Panel of effects to switch on, with a slider for each of their parameters."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from flexarm_env.pictures import words
 
 
 class EffectsPanel:
-    """The effects that a session's arm can have.
+    """The effects that apply to a session's arm.
 
     Args:
-        session: whose draft is changed.
+        session: that holds the draft to change.
         changed: called after each change.
-        complain: called with one line where something is refused.
+        show_error: called with one line where a change is refused.
     """
 
-    def __init__(self, session: Session, changed: Callable[[], None], complain: Callable[[str], None]) -> None:
-        self.session, self.changed, self.complain = session, changed, complain
+    def __init__(self, session: Session, changed: Callable[[], None], show_error: Callable[[str], None]) -> None:
+        self.session, self.changed, self.show_error = session, changed, show_error
         self.rows = html.div().classes("effects")
         self.refresh()
 
@@ -48,7 +48,7 @@ class EffectsPanel:
             try:
                 self.session.tick(name, bool(box.value))
             except InputError as error:
-                self.complain(str(error))
+                self.show_error(str(error))
                 box.value = False
                 return
             self._fill(sliders, name, effect)
@@ -82,7 +82,7 @@ class EffectsPanel:
             try:
                 self.session.drag(name, key, moved)
             except InputError as error:
-                self.complain(str(error))
+                self.show_error(str(error))
                 return
             shown.set_text(f"{words.number(moved)} {unit}")
             self.changed()

@@ -1,4 +1,4 @@
-"""What the server refuses before it reads: other hosts' names, other sites' pages, and bodies that are too large."""
+"""Refusal of requests before they are read: foreign host names, other sites' pages, and bodies that are too large."""
 
 from __future__ import annotations
 
@@ -10,27 +10,27 @@ Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 App = Callable[[Scope, Receive, Send], Awaitable[None]]
 
-#: Largest body of a request [bytes]: some recordings at once.
+#: Largest body of a request [bytes]: room for several recordings.
 LARGEST_BODY = 64 * 2**20
 
 
 class Guard:
-    """ASGI middleware. A page elsewhere could otherwise reach the lab through the visitor's own browser.
+    """ASGI middleware against pages of other sites that reach the lab through the visitor's browser.
 
-    A name that resolves to this machine (DNS rebinding) shows in the Host header, a request from another site's page in
-    Origin.
+    A foreign name that resolves to this machine (DNS rebinding) appears in the Host header, a request from another site's
+    page in Origin.
 
     Args:
-        app: what is guarded.
-        hosts: "name:port" under which the lab is served.
-        largest: size of a body [bytes].
+        app: the guarded application.
+        hosts: "name:port" at which the lab is served.
+        largest: limit on the size of a body [bytes].
     """
 
     def __init__(self, app: App, hosts: tuple[str, ...], largest: int = LARGEST_BODY) -> None:
         self.app, self.hosts, self.largest = app, hosts, largest
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request, or refuse it."""
+        """Pass a request on, or refuse it."""
         if scope["type"] not in ("http", "websocket"):
             return await self.app(scope, receive, send)
         headers = {key.decode("latin-1").lower(): value.decode("latin-1") for key, value in scope["headers"]}

@@ -1,4 +1,4 @@
-"""Long work in a process of its own, which tells how far it is and can be stopped at once."""
+"""Long work in a separate process that reports its progress and can be stopped at once."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ import cloudpickle
 from flexarm_env.errors import InputError
 
 Progress = Callable[[float, str], None]
-#: Time [s] that a process has to clear up before it is killed.
-PATIENCE = 5.0
-#: Time [s] that its children have after it to clear up behind themselves.
-CLEARING = 1.0
+#: Time [s] that a process has for its cleanup before it is killed.
+GRACE_PERIOD = 5.0
+#: Time [s] that its children have for theirs after it has ended.
+CHILDREN_GRACE_PERIOD = 1.0
 RUNNING, DONE, FAILED, STOPPED = "running", "done", "failed", "stopped"
 
 
@@ -28,14 +28,14 @@ class Job:
     """Work that runs in another process.
 
     Args:
-        title: for a person.
-        work: called with a function that takes the share done and what is being done; what it returns is the result.
+        title: shown to the user.
+        work: returns the result; called with a function that takes the share done and the name of the current stage.
 
     Attributes:
         state: "running", "done", "failed" or "stopped".
-        share: of the work that is done, 0 to 1.
-        text: what is being done, or one line that says why it failed.
-        result: what the work returned, once it is done.
+        share: of the work done, 0 to 1.
+        text: the current stage, or one line with the reason of a failure.
+        result: of the work, once it is done.
     """
 
     def __init__(self, title: str, work: Callable[[Progress], Any]) -> None:
@@ -48,7 +48,7 @@ class Job:
         theirs.close()
 
     def poll(self) -> bool:
-        """Take in what the process has said; return whether anything changed."""
+        """Read the messages of the process; return whether there were any."""
         changed = False
         while self.state == RUNNING:
             try:
@@ -62,7 +62,7 @@ class Job:
         return changed
 
     def stop(self) -> None:
-        """End the process and all that it has started."""
+        """End the process and its children."""
         if self.state == RUNNING:
             self.state, self.text = STOPPED, "stopped"
             self._end()
@@ -79,18 +79,18 @@ class Job:
         self._end()
 
     def _end(self) -> None:
-        self._pipe.close()  # upon which the process clears up and ends
+        self._pipe.close()  # the process then cleans up and ends
         threading.Thread(target=self._reap, daemon=True).start()
 
     def _reap(self) -> None:
-        self._process.join(PATIENCE)
-        time.sleep(CLEARING)
+        self._process.join(GRACE_PERIOD)
+        time.sleep(CHILDREN_GRACE_PERIOD)
         _kill(self._process.pid or 0)  # the group: children may outlive their leader
         self._process.join()
 
 
 def _kill(leader: int) -> None:
-    """End a process and the group that it leads, at once."""
+    """Kill a process and the group that it leads."""
     with contextlib.suppress(ProcessLookupError, PermissionError):
         if hasattr(os, "killpg"):
             os.killpg(leader, signal.SIGKILL)
@@ -99,18 +99,18 @@ def _kill(leader: int) -> None:
 
 
 def _run(pipe: Connection, work: bytes) -> None:
-    """Do the work in this process, which leads a group of its own and ends with whoever started it."""
+    """Do the work in this process, which leads its own group and ends with its parent."""
     if hasattr(os, "setsid"):
         os.setsid()
     over = threading.Event()
     threading.Thread(target=_end_with, args=(pipe, over), daemon=True).start()
 
-    def say(share: float, text: str) -> None:
+    def report(share: float, text: str) -> None:
         with contextlib.suppress(OSError):
             pipe.send((RUNNING, (share, text)))
 
     try:
-        answer: tuple[str, Any] = (DONE, cloudpickle.dumps(cloudpickle.loads(work)(say)))
+        answer: tuple[str, Any] = (DONE, cloudpickle.dumps(cloudpickle.loads(work)(report)))
     except InputError as error:
         answer = (FAILED, str(error))
     except KeyboardInterrupt:
@@ -123,12 +123,12 @@ def _run(pipe: Connection, work: bytes) -> None:
 
 
 def _end_with(pipe: Connection, over: threading.Event) -> None:
-    """Wait for the other end to close; interrupt the work, whose own processes and files are then cleared up."""
+    """Wait for the other end to close, then interrupt the work, which cleans up its processes and files."""
     with contextlib.suppress(EOFError, OSError):
         pipe.recv()
     if over.is_set():
         return
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # an interrupt within compiled code complains, to nobody's use
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # an interrupt within compiled code prints a useless warning
     signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
-    if not over.wait(PATIENCE):
+    if not over.wait(GRACE_PERIOD):
         _kill(os.getpid())

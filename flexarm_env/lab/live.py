@@ -1,4 +1,4 @@
-"""Recordings kept ready, so that a changed arm is simulated at once."""
+"""Recordings prepared once, for immediate replays of a changed arm."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.experiments.payload import loaded
-from flexarm_env.identify.data import prepare
-from flexarm_env.identify.predict import replay
-from flexarm_env.identify.problem import Score, score
-from flexarm_env.identify.run import Run
+from flexarm_env.experiments.payload import with_payload
+from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.replay.error_measure import Score, score
+from flexarm_env.identify.replay.replay import replay
+from flexarm_env.identify.replay.run import Run
 from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
@@ -34,14 +34,14 @@ class Simulated:
 
 
 class Live:
-    """Recordings prepared once, and an arm simulated through them as often as wanted.
+    """Recordings prepared once for any number of replays.
 
     Args:
-        arm: for its sensors and noise.
+        arm: defines sensors and noise.
         recordings: of the machine.
 
     Attributes:
-        signals: that arm and recordings have in common.
+        signals: common to arm and recordings.
 
     Raises:
         InputError: for recordings that do not fit the arm.
@@ -55,7 +55,7 @@ class Live:
         self._threads = ThreadPoolExecutor(max_workers=4, thread_name_prefix="flexarm-live")
 
     def simulate(self, arm: Arm) -> Simulated:
-        """Return free replays of all recordings."""
+        """Replay all recordings freely."""
         known = self._reduced(arm)
         readings = list(self._threads.map(lambda run: self._replay(known, run), self.data.runs))
         off = [(run.measured - y) / self.data.noise for run, y in zip(self.data.runs, readings, strict=True)]
@@ -63,12 +63,12 @@ class Live:
         return Simulated({run.name: y for run, y in zip(self.data.runs, readings, strict=True)}, float(np.sqrt(squares.mean())))
 
     def held_out(self, arm: Arm) -> Score:
-        """Return the held-out errors of an arm; this takes about a second."""
+        """Compute the held-out errors of an arm; this takes about a second."""
         return score(self._reduced(arm), self.data)
 
     def _reduced(self, arm: Arm) -> Arm:
         return replace(arm, sensors={signal: arm.sensors[signal] for signal in self._sensors})
 
     def _replay(self, arm: Arm, run: Run) -> Floats:
-        plant = loaded(arm, run.payload).plant(self.data.interval)
-        return replay(plant, run, self.data.noise)
+        plant = with_payload(arm, run.payload).plant(self.data.interval)
+        return replay(plant, run, self.data)

@@ -1,4 +1,4 @@
-"""The lab's overlay: measured, as given and now, thin enough to follow a finger."""
+"""The lab's overlay: measured, as given and now, with few enough points to follow a slider."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import plotly.graph_objects as go
 from numpy.typing import NDArray
 from plotly.subplots import make_subplots
 
-from flexarm_env.identify.run import Run
+from flexarm_env.identify.replay.run import Run
 from flexarm_env.pictures import words
 from flexarm_env.pictures.overlays import title
-from flexarm_env.pictures.plots import digits, finished, legend
+from flexarm_env.pictures.plots import digits, legend, with_layout
 from flexarm_env.pictures.style import AFTER_LINE, BEFORE_LINE, MEASURED_LINE
 
 Floats = NDArray[np.float64]
@@ -23,18 +23,18 @@ HEIGHT = 128  # [px] of each signal
 
 
 def thinned(values: Floats) -> list[float]:
-    """Return at most about so many values as are drawn, to four digits."""
+    """Thin values to about the number of points drawn, and round them to four digits."""
     return digits(values[:: max(len(values) // POINTS, 1)])
 
 
 def overlay(run: Run, signals: list[str], given: Floats, now: Floats) -> go.Figure:
-    """Return each signal of a recording: measured, the model as given, and the model as it is now.
+    """Draw each signal of a recording: measured, the model as given, and the current model.
 
     Args:
         run: the recording.
         signals: names of its columns.
         given: (samples, signals), the free replay of the arm as given.
-        now: the same of the arm as it is now.
+        now: the same for the current arm.
     """
     order = words.signals_of(signals)
     figure = make_subplots(
@@ -53,11 +53,11 @@ def overlay(run: Run, signals: list[str], given: Floats, now: Floats) -> go.Figu
             figure.add_trace(go.Scatter(x=x, y=thinned(values[:, column]), mode="lines", **look), row, 1)
     figure.update_xaxes(title_text="time [s]", row=len(order))
     figure.update_layout(uirevision=run.name)  # a zoom outlives a drag
-    return finished(figure, 90 + HEIGHT * len(order), "x unified", top=58, **legend(1.0 + 24.0 / (HEIGHT * len(order))))
+    return with_layout(figure, 90 + HEIGHT * len(order), "x unified", top=58, **legend(1.0 + 24.0 / (HEIGHT * len(order))))
 
 
 def moved(signals: list[str], now: Floats) -> tuple[Mapping[str, Any], list[int]]:
-    """Return what Plotly's restyle needs to move the curves of the model as it is now."""
+    """Build the arguments of Plotly's restyle that move the curves of the current model."""
     order = words.signals_of(signals)
     ys = [thinned(now[:, signals.index(signal)]) for signal in order]
     return {"y": ys}, [3 * i + 2 for i in range(len(order))]

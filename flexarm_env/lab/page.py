@@ -1,4 +1,4 @@
-"""The lab's page: recordings, the overlay, effects to play with, the diagnosis and what comes of it."""
+"""The lab's page: recordings, the overlay, effects to try, the diagnosis and its results."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from flexarm_env.lab.style import CSS, PRIMARY
 from flexarm_env.lab.view_panel import ViewPanel
 from flexarm_env.recordings.recording import Recording
 
-#: How often [s] the page looks what is new.
+#: Period [s] at which the page polls the session.
 BEAT = 0.04
 
 
@@ -23,52 +23,52 @@ class LabPage:
     """The page of one tab.
 
     Args:
-        session: what the tab has.
-        demo: returns the recordings of the demo.
+        session: state of the tab.
+        demo: reads the recordings of the demo.
     """
 
     def __init__(self, session: Session, demo: Callable[[], list[Recording]]) -> None:
-        self.session, self.news = session, session.news
+        self.session, self.revision = session, session.revision
         ui.colors(primary=PRIMARY)
         ui.add_css(CSS)
         with html.div().classes("lab"):
             with html.div().classes("top"):
                 html.h1("FlexArm lab")
                 ui.label("where a model of an arm fails, and what it lacks").classes("hint")
-            self.complaint = html.div().classes("complaint").props("role=alert")
+            self.error_box = html.div().classes("complaint").props("role=alert")
             with html.div().classes("board"):
                 with html.section().classes("data"):
                     with html.div().classes("card"):
-                        self.data = DataPanel(session, demo, self._say, self.complain, self.refresh)
+                        self.data = DataPanel(session, demo, self._show_status, self.show_error, self.refresh)
                     self._diagnose_card()
                 with html.section().classes("view"):
-                    self.results = ResultsPanel(session, self.complain, self._stepped)
+                    self.results = ResultsPanel(session, self.show_error, self._refresh_arm)
                     with html.div().classes("card"):
                         self.view = ViewPanel(session, self.results.refresh)
                     self.results.place_below()
                 with html.section().classes("choose card"):
                     html.h2("Effects")
                     ui.label("Tick and drag: the model is simulated anew at once.").classes("muted")
-                    self.effects = EffectsPanel(session, self.view.touch, self.complain)
-        self.complain("")
+                    self.effects = EffectsPanel(session, self.view.touch, self.show_error)
+        self.show_error("")
         self.refresh()
         ui.timer(BEAT, self._beat)
 
-    def complain(self, line: str) -> None:
-        """Show one line that says what is wrong, or take it away."""
-        self.complaint.clear()
-        self.complaint.set_visibility(bool(line))
+    def show_error(self, line: str) -> None:
+        """Show one line on bad input; an empty line removes it."""
+        self.error_box.clear()
+        self.error_box.set_visibility(bool(line))
         if line:
-            with self.complaint:
+            with self.error_box:
                 ui.label(line)
 
     def refresh(self) -> None:
         """Show the session anew."""
         self.data.refresh()
         self.view.refresh()
-        self._stepped()
+        self._refresh_arm()
 
-    def _stepped(self) -> None:
+    def _refresh_arm(self) -> None:
         """Show the arm of a new step."""
         self.effects.refresh()
         self.view.touch()
@@ -76,10 +76,10 @@ class LabPage:
         self._buttons()
 
     async def _beat(self) -> None:
-        self._watch()
-        await self.view.beat()
+        self._poll()
+        await self.view.update()
 
-    def _say(self, text: str) -> None:
+    def _show_status(self, text: str) -> None:
         self.doing.set_text(text)
 
     def _diagnose_card(self) -> None:
@@ -92,16 +92,16 @@ class LabPage:
             self.doing = ui.label("").classes("muted").props("role=status")
 
     def _diagnose(self) -> None:
-        self.complain("")
+        self.show_error("")
         try:
             self.session.diagnose()
         except InputError as error:
-            self.complain(str(error))
+            self.show_error(str(error))
         self._buttons()
 
     def _stop(self) -> None:
         self.session.stop()
-        self._say("stopped")
+        self._show_status("stopped")
         self._buttons()
 
     def _buttons(self) -> None:
@@ -111,22 +111,22 @@ class LabPage:
         self.bar.set_visibility(busy)
         self.results.enable(not busy)
 
-    def _watch(self) -> None:
-        """Show what the work under way has said."""
+    def _poll(self) -> None:
+        """Show progress and results of the current work."""
         self.session.poll()
         job = self.session.job
-        if job is None or self.session.news == self.news:
+        if job is None or self.session.revision == self.revision:
             return
-        self.news = self.session.news
+        self.revision = self.session.revision
         self.bar.set_value(job.share)
         if job.state == "running":
-            self._say(f"{job.title}, {100.0 * job.share:.0f} %: {job.text}")
+            self._show_status(f"{job.title}, {100.0 * job.share:.0f} %: {job.text}")
             return
-        self._say(f"{job.title}: {job.state}")
+        self._show_status(f"{job.title}: {job.state}")
         if job.state == "failed":
-            self.complain(job.text)
+            self.show_error(job.text)
         elif isinstance(job.result, str):
             ui.download.content(job.result, "report.html", "text/html")
         else:
-            self._stepped()
+            self._refresh_arm()
         self._buttons()

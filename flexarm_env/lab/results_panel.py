@@ -1,4 +1,4 @@
-"""The verdict, the ranking with its buttons, the falling error, and what can be taken home."""
+"""Panel of the verdict, the ranking with its buttons, the error after each step, and the downloads."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ RANKED = 7
 
 
 class ResultsPanel:
-    """What the steps so far have brought: the verdict above the overlay, the rest below it.
+    """Results of the steps so far: the verdict above the overlay, the rest below it.
 
     Args:
-        session: whose results they are.
-        complain: called with one line where something is refused.
+        session: that holds the results.
+        show_error: called with one line where a request is refused.
         added: called when an effect has been added.
     """
 
-    def __init__(self, session: Session, complain: Callable[[str], None], added: Callable[[], None]) -> None:
-        self.session, self.complain, self.added = session, complain, added
+    def __init__(self, session: Session, show_error: Callable[[str], None], added: Callable[[], None]) -> None:
+        self.session, self.show_error, self.added = session, show_error, added
         self.buttons: list[ui.button] = []
         with html.div().classes("card") as self.verdict_card:
             self.verdict = ui.label().classes("verdict").props("role=status")
             self.taker = ui.button("Add", on_click=self._adopt).classes("q-mt-sm")
 
     def place_below(self) -> None:
-        """Build what stands below the overlay."""
+        """Build the part below the overlay."""
         with html.div().classes("results") as self.below:
             with html.div().classes("card"):
                 html.h2("How the held-out error fell")
@@ -52,7 +52,7 @@ class ResultsPanel:
         """Show the session's results.
 
         Args:
-            held_out: error of the arm as it is now, where it has been worked out.
+            held_out: error of the current arm, once it is computed.
         """
         found = self.session.diagnosis
         self.verdict_card.set_visibility(found is not None)
@@ -76,7 +76,7 @@ class ResultsPanel:
         self.why.set_text(proposal.why if proposal is not None else "")
 
     def enable(self, free: bool) -> None:
-        """Let the buttons that begin work be pressed, or not."""
+        """Enable or disable the buttons that start work."""
         for button in [*self.buttons, self.taker, self.report]:
             button.set_enabled(free)
 
@@ -109,11 +109,11 @@ class ResultsPanel:
                 ui.label(words.parameters_of(one.estimates)).classes("parameters")
 
     def _add(self, effect: str) -> None:
-        self.complain("")
+        self.show_error("")
         try:
             self.session.add(effect)
         except InputError as error:
-            self.complain(str(error))
+            self.show_error(str(error))
         self.added()
 
     def _adopt(self) -> None:
@@ -124,11 +124,11 @@ class ResultsPanel:
         ui.download.content(self.session.arm_file(), f"{self.session.draft.name}.toml", "application/toml")
 
     def _report(self) -> None:
-        self.complain("")
+        self.show_error("")
         try:
             self.session.write_report()
         except InputError as error:
-            self.complain(str(error))
+            self.show_error(str(error))
         self.added()
 
     def _next_run(self) -> None:

@@ -1,4 +1,4 @@
-"""From where to where a parameter's slider goes."""
+"""Range and scale of a parameter's slider."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from flexarm_env.parameters import Parameter
 #: Ends of a slider, over the usual size.
 LARGEST, SMALLEST, ROOM = 5.0, 0.05, 2.0
 STEPS = 200
-#: A parameter whose bounds are closer than this, such as a phase, has them as its slider's ends.
+#: Where the bounds of a parameter are closer than this, as of a phase, they are the slider's ends.
 NARROW = 15.0
 
 
@@ -29,12 +29,12 @@ class Scale:
     logarithmic: bool
 
     def position(self, value: float) -> float:
-        """Return where a value lies, 0 to `STEPS`."""
+        """Convert a value to a position, 0 to `STEPS`."""
         low, high, at = (math.log(x) for x in (self.low, self.high, value)) if self.logarithmic else (self.low, self.high, value)
         return STEPS * (at - low) / (high - low)
 
     def value(self, position: float) -> float:
-        """Return the value at a position, to four digits, the ends exactly."""
+        """Convert a position to a value, to four digits, the ends exactly."""
         share = min(max(position / STEPS, 0.0), 1.0)
         if share in (0.0, 1.0):
             return self.high if share else self.low
@@ -44,12 +44,12 @@ class Scale:
 
 
 def scale_of(parameter: Parameter, value: float, size: float) -> Scale:
-    """Return the slider of a parameter.
+    """Choose the scale of a parameter's slider.
 
     Args:
         parameter: with its bounds.
-        value: where it starts; the slider reaches beyond.
-        size: a usual size of the parameter in these data.
+        value: the initial one; the slider extends beyond it.
+        size: a typical size of the parameter in these recordings.
     """
     if parameter.high - parameter.low <= NARROW and parameter.null is None:
         return Scale(parameter.low, parameter.high, False)

@@ -1,4 +1,4 @@
-"""Serve the lab on this machine, to this machine."""
+"""The lab's server, on the loopback interface."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from flexarm_env.lab.session import Session
 from flexarm_env.recordings.recording import Recording
 
 HOST = "127.0.0.1"
-#: Tabs whose state is kept; the one that was opened first goes first.
+#: Number of tabs with a stored session; beyond it the oldest is dropped.
 MOST_SESSIONS = 16
 DEMO = Path(__file__).resolve().parent.parent / "demo"
 
@@ -31,19 +31,19 @@ def serve(arm: Arm, recordings: Sequence[Recording], columns: Path | None, port:
     """Serve the lab until Ctrl-C.
 
     Args:
-        arm: with which every tab starts.
-        recordings: with which every tab starts.
+        arm: initial one of every tab.
+        recordings: initial ones of every tab.
         columns: a column map for uploads.
-        port: to listen at; 0 takes any that is free.
+        port: to listen at; 0 takes a free one.
         show: whether to open a browser.
 
     Raises:
         InputError: if the port is taken, or the recordings do not fit the arm.
     """
     if recordings:
-        Live(arm, recordings)  # refuses what does not fit before anything is served
+        Live(arm, recordings)  # refuses unsuitable recordings before the server starts
     port = _free(port)
-    os.environ.pop("PYTEST_CURRENT_TEST", None)  # NiceGUI would take a lab that a test has started for one of its own
+    os.environ.pop("PYTEST_CURRENT_TEST", None)  # with it NiceGUI would take a lab under test for its own
     sessions: OrderedDict[str, Session] = OrderedDict()
 
     @ui.page("/", title="FlexArm lab")
@@ -62,22 +62,22 @@ def serve(arm: Arm, recordings: Sequence[Recording], columns: Path | None, port:
             session.stop()
 
     hosts = (f"{HOST}:{port}", f"localhost:{port}")
-    app.config.quasar_config["loadingBar"] = {"skipHijack": True}  # a bar without a name: a screen reader stumbles over it
+    app.config.quasar_config["loadingBar"] = {"skipHijack": True}  # the bar has no name for a screen reader
     app.add_middleware(Guard, hosts=hosts)
     app.on_startup(lambda: background_tasks.create(_announce(port)))
-    logging.getLogger("uvicorn.error").addFilter(_is_news)
+    logging.getLogger("uvicorn.error").addFilter(_is_relevant)
     with contextlib.suppress(KeyboardInterrupt):
         ui.run(host=HOST, port=port, title="FlexArm lab", reload=False, show=show, show_welcome_message=False, language="en-US")
 
 
-def _is_news(record: logging.LogRecord) -> bool:
-    """Whether a line of the server's log is not about a visitor who left before the answer: Starlette calls that an error."""
+def _is_relevant(record: logging.LogRecord) -> bool:
+    """Filter from the server's log the lines on visitors who left before the answer, an error to Starlette."""
     error = record.exc_info[1] if record.exc_info else None
     return not (isinstance(error, RuntimeError) and str(error) == "No response returned.")
 
 
 async def _announce(port: int) -> None:
-    """Say where the lab is once it answers there."""
+    """Print the lab's address once it answers."""
     while True:
         with contextlib.suppress(OSError):
             _, writer = await asyncio.open_connection(HOST, port)
@@ -95,7 +95,7 @@ def _started(arm: Arm, recordings: Sequence[Recording], columns: Path | None) ->
 
 
 def _free(port: int) -> int:
-    """Return the port, or a free one for 0.
+    """Check that the port is free; choose a free one for 0.
 
     Raises:
         InputError: if it is taken.

@@ -1,4 +1,4 @@
-"""What one person at one browser tab has: an arm, recordings, steps taken, and the work under way."""
+"""State of one browser tab: the arm, recordings, steps taken, and the current work."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import flexarm_env
 from flexarm_env.arm import Arm
 from flexarm_env.arm_file import arm_text
 from flexarm_env.errors import InputError
-from flexarm_env.identify.data import prepare
+from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.results import Addition, Diagnosis
 from flexarm_env.lab.job import DONE, Job, Progress
 from flexarm_env.lab.live import Live
@@ -30,17 +30,17 @@ class Session:
     """State of one tab.
 
     Attributes:
-        base: the arm as it came.
-        arm: the arm of the last step.
-        draft: the arm that is simulated: that of the last step, with effects ticked and sizes dragged by hand.
+        base: the arm as given.
+        arm: the arm after the last step.
+        draft: the simulated arm: that after the last step, with effects and sizes set by hand.
         columns: a column map named on the command line.
         recordings: of the machine.
-        live: the recordings made ready; None while there are none.
+        live: the prepared recordings; None while there are none.
         steps: name and held-out error over the noise after each step.
-        diagnosis: the last one; of the arm before what it found was added.
-        job: the work under way, or what ended last.
-        added: whether what the last diagnosis found has been added.
-        news: how often the work under way has said something; pages that show the session compare it.
+        diagnosis: the last one; it is of the arm before its effects were added.
+        job: the current work, or the last.
+        added: whether the effects of the last diagnosis have been added.
+        revision: count of messages from the current work; the page compares it to detect changes.
     """
 
     base: Arm
@@ -51,7 +51,7 @@ class Session:
     diagnosis: Diagnosis | None = None
     job: Job | None = None
     added: bool = False
-    news: int = 0
+    revision: int = 0
 
     def __post_init__(self) -> None:
         self.arm = self.draft = self.base
@@ -62,7 +62,7 @@ class Session:
         return self.job is not None and self.job.state == "running"
 
     def upload(self, files: Sequence[tuple[str, bytes]]) -> list[str]:
-        """Take in uploaded files, by name and content; return a line for each that is not taken or that is to be noted."""
+        """Read uploaded files, by name and content; return a line for each refused or noted one."""
         taken, lines = list(self.recordings), []
         for name, content in files:
             try:
@@ -77,12 +77,12 @@ class Session:
         return lines
 
     def use(self, recordings: list[Recording]) -> None:
-        """Begin again with these recordings.
+        """Start over with these recordings.
 
         Raises:
             InputError: if they do not fit the arm.
         """
-        # Pages look at the session while this works: nothing changes before all is known.
+        # Pages read the session meanwhile: it changes only after all checks have passed.
         live = Live(self.base, recordings) if recordings else None
         steps = [] if live is None else [(AS_GIVEN, live.held_out(self.base).windows)]
         self.stop()
@@ -91,7 +91,7 @@ class Session:
         self.diagnosis, self.job, self.added = None, None, False
 
     def change_arm(self, arm: Arm) -> None:
-        """Begin again with another arm and the same recordings.
+        """Start over with another arm and the same recordings.
 
         Raises:
             InputError: if they do not fit it.
@@ -104,7 +104,7 @@ class Session:
             raise
 
     def tick(self, effect: str, on: bool) -> None:
-        """Put an effect into the draft, as the last step had it or at its typical size, or take it out.
+        """Put an effect into the draft, at the size of the last step or its typical one, or remove it.
 
         Raises:
             InputError: if the arm cannot have it.
@@ -131,14 +131,14 @@ class Session:
         self.draft = self.draft.with_effect(effect, **{parameter: value})
 
     def diagnose(self) -> None:
-        """Begin to diagnose the arm as it is now."""
+        """Start a diagnosis of the current arm."""
         recordings = self._ready()
-        arm = self._settle()
+        arm = self._commit_draft()
         self.diagnosis = None
-        self._begin("Diagnosing", lambda say: flexarm_env.diagnose(arm, recordings, progress=say, seed=SEED, jobs=JOBS))
+        self._begin("Diagnosing", lambda progress: flexarm_env.diagnose(arm, recordings, progress=progress, seed=SEED, jobs=JOBS))
 
     def add(self, effect: str) -> None:
-        """Add an effect: at once where it is all that the diagnosis accepted, else by fitting it, which takes a while.
+        """Add an effect: at once where the diagnosis accepted it alone, else by fitting it, which takes a while.
 
         Raises:
             InputError: for an effect that the arm has already or cannot have.
@@ -149,23 +149,23 @@ class Session:
             return
         recordings = self._ready()
         self.draft.with_effect(effect)
-        arm = self._settle()
-        self._begin(f"Adding {effect}", lambda say: flexarm_env.add(effect, arm, recordings, progress=say, seed=SEED))
+        arm = self._commit_draft()
+        self._begin(f"Adding {effect}", lambda progress: flexarm_env.add(effect, arm, recordings, progress=progress, seed=SEED))
 
     @property
     def can_adopt(self) -> bool:
-        """Whether the last diagnosis found an arm that is better and not taken over yet."""
+        """Whether the last diagnosis found a better arm that is not adopted yet."""
         return self.diagnosis is not None and self.diagnosis.verdict in ("effects", "parameters") and not self.added
 
-    def _settle(self) -> Arm:
-        """Make a step of what was ticked and dragged by hand, if anything; return the arm as it is now."""
+    def _commit_draft(self) -> Arm:
+        """Record changes made by hand, if any, as a step; return the current arm."""
         if self.draft != self.arm and self.live is not None:
             self._step(BY_HAND, self.live.held_out(self.draft).windows)
             self.arm = self.draft
         return self.arm
 
     def adopt(self) -> None:
-        """Take over the arm that the diagnosis ended with, and its steps."""
+        """Adopt the diagnosis's final arm and its steps."""
         found = self.diagnosis
         if found is None or not self.can_adopt:
             raise InputError("there is nothing to add: diagnose first")
@@ -182,7 +182,7 @@ class Session:
         self.steps = [*self.steps, (name, error)]
 
     def write_report(self) -> None:
-        """Begin to make the page of the last diagnosis, or of a comparison where there is none."""
+        """Start writing the page of the last diagnosis, or of a comparison where there is none."""
         recordings, base, diagnosis = self._ready(), self.base, self.diagnosis
         nominal = base if diagnosis is None else diagnosis.nominal
         verb = "compare" if diagnosis is None else "diagnose"
@@ -191,16 +191,16 @@ class Session:
         made: dict[str, Any] = {"command_line": shlex.join(line + ([] if seed is None else ["--seed", str(seed)]))}
         made |= provenance("lab", nominal.name, recordings, seed)
 
-        def work(say: Progress) -> str:
-            say(0.05, "comparing")
-            return report(recordings, flexarm_env.compare(nominal, recordings), diagnosis, made, say)
+        def work(progress: Progress) -> str:
+            progress(0.05, "comparing")
+            return report(recordings, flexarm_env.compare(nominal, recordings), diagnosis, made, progress)
 
         self._begin("Writing the report", work)
 
     def poll(self) -> None:
-        """Take in what the work under way has said, and what it found once it has ended."""
+        """Read the messages of the current work, and its result once it has ended."""
         if self.job is not None and self.job.poll():
-            self.news += 1
+            self.revision += 1
             if self.job.state == DONE:
                 self._finish(self.job.result)
 
@@ -215,7 +215,7 @@ class Session:
             self.added = True
 
     def stop(self) -> None:
-        """Stop the work under way."""
+        """Stop the current work."""
         if self.job is not None:
             self.job.stop()
 
@@ -230,7 +230,7 @@ class Session:
         self.job = Job(title, work)
 
     def arm_file(self) -> str:
-        """Return the text of the draft's arm file."""
+        """Write the draft's arm file as text."""
         arm = self.draft
         if arm is not self.arm:  # intervals hold for fitted values only
             kept = {k: v for k, v in arm.fitted.items() if _has(arm, k) and arm.value(k) == v["value"]}
@@ -238,7 +238,7 @@ class Session:
         return arm_text(arm)
 
     def next_run(self) -> str | None:
-        """Return the proposed next run as a CSV file of commands, None if there is no proposal."""
+        """Write the proposed next run as CSV text of commands; None if there is no proposal."""
         found = self.diagnosis.next_run if self.diagnosis is not None else None
         return None if found is None else found.as_csv()
 

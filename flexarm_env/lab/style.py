@@ -1,4 +1,4 @@
-"""The lab's look."""
+"""Colours and style sheet of the lab."""
 
 from __future__ import annotations
 

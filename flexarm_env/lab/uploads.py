@@ -1,4 +1,4 @@
-"""Recordings that a browser sends: bounded, and read as those on disk are."""
+"""Recordings uploaded by a browser: bounded in size, and read as files on disk are."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from flexarm_env.recordings.recording import Recording
 from flexarm_env.terminal.inputs import read_recordings
 
 MOST_RECORDINGS = 12
-#: Samples of all recordings together: beyond it nothing is live any more.
+#: Limit on the samples of all recordings together: beyond it replays are too slow to follow a slider.
 MOST_SAMPLES = 2_000_000
 
 
 def read_upload(arm: Arm, name: str, content: bytes, columns: Path | None, present: list[Recording]) -> Recording:
-    """Return the recording in an uploaded file.
+    """Read the recording in an uploaded file.
 
     Args:
-        arm: that it is of.
-        name: of the file, as the browser says.
+        arm: recorded in it.
+        name: of the file, as sent by the browser.
         content: of the file.
         columns: a column map, if one was named on the command line.
-        present: recordings that are there already.
+        present: recordings of the session so far.
 
     Raises:
         InputError: one line that names the file, row and column.
@@ -50,7 +50,7 @@ def read_upload(arm: Arm, name: str, content: bytes, columns: Path | None, prese
 
 
 def plain_name(name: str) -> str:
-    """Return a file's name without folders and without what no file should be called."""
+    """Strip folders and unsafe characters from a file's name."""
     last = PureWindowsPath(PurePosixPath(name).name).name
     text = "".join(c if c.isalnum() or c in "-_. ()" else "_" for c in last).strip(". ")[-80:]
     return text or "recording.csv"

@@ -1,4 +1,4 @@
-"""The overlay of measured and modelled signals, which follows every change of the arm, and how large the error is."""
+"""Panel of the overlay of measured and modelled signals, which follows every change of the arm, and of the error."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexarm_env.lab.overlay import moved, overlay
 from flexarm_env.lab.session import Session
 from flexarm_env.pictures import words
 
-#: How long [s] nothing must change before the held-out error is worked out.
+#: Time [s] without changes after which the held-out error is computed.
 SETTLED = 0.6
 FIRST_STEPS = (
     "Drop recordings of the arm in, or start with the demo: you see them beside the model.",
@@ -23,11 +23,11 @@ FIRST_STEPS = (
 
 
 class ViewPanel:
-    """What a session's arm makes of its recordings.
+    """Replays of a session's arm beside its recordings.
 
     Args:
-        session: whose arm it is.
-        scored: called with the held-out error once it is known.
+        session: that holds arm and recordings.
+        scored: called with the held-out error once it is computed.
     """
 
     def __init__(self, session: Session, scored: Callable[[float | None], None]) -> None:
@@ -47,7 +47,7 @@ class ViewPanel:
                 html.li(step)
 
     def refresh(self) -> None:
-        """Begin anew with the session's recordings."""
+        """Start over with the session's recordings."""
         names = [one.name for one in self.session.recordings]
         self.given = self.now = self.held_out = None
         self.choice.set_options(names, value=self.choice.value if self.choice.value in names else next(iter(names), None))
@@ -61,8 +61,8 @@ class ViewPanel:
         """Mark the arm as changed."""
         self.stale, self.changed_at = True, time.monotonic()
 
-    async def beat(self) -> None:
-        """Simulate if the arm has changed; score it once it has stayed as it is for a while."""
+    async def update(self) -> None:
+        """Simulate the arm after a change; compute its held-out error once changes have ceased."""
         if self.session.live is None:
             return
         if self.stale and not self.simulating:

@@ -1,1 +1,1 @@
-"""What a person sees of a result: numbers and sentences, figures, and a page. Figures need the extra `plots`."""
+"""Presentation of results: numbers and sentences, figures, and the report page. Figures need the extra `plots`."""

@@ -1,4 +1,4 @@
-"""The falling error, the ranking of effects, and constants before and after."""
+"""Bar charts of the error after each step, of the ranking of effects, and of the change of each constant."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from typing import Any
 
 import plotly.graph_objects as go
 
-from flexarm_env.identify.results import Candidate, Diagnosis, Estimate
+from flexarm_env.identify.calibrate.estimate import Estimate
+from flexarm_env.identify.results import Candidate, Diagnosis
 from flexarm_env.pictures import words
-from flexarm_env.pictures.plots import finished
+from flexarm_env.pictures.plots import with_layout
 from flexarm_env.pictures.style import AFTER, AFTER_BAR, BEFORE_BAR, INK, QUIET_BAR
 
 NOISE_BAR = {"color": "white", "line": {"color": INK, "width": 1}, "pattern": {"shape": ".", "fgcolor": INK, "size": 5}}
@@ -23,7 +24,7 @@ RANKED = 8
 
 
 def waterfall(steps: Sequence[tuple[str, float]]) -> go.Figure:
-    """Return the error over the noise after each step, what the step removed, and the noise."""
+    """Draw the error over the noise after each step, the part that the step removed, and the noise floor."""
     names = [_broken(name) for name, _ in steps]
     values = [value for _, value in steps]
     looks = [BEFORE_BAR, *[QUIET_BAR] * (len(steps) - 2), AFTER_BAR] if len(steps) > 1 else [BEFORE_BAR]
@@ -40,7 +41,7 @@ def waterfall(steps: Sequence[tuple[str, float]]) -> go.Figure:
     figure.add_vline(x=1.0, line={"color": INK, "width": 1.2, "dash": "dot"})
     figure.update_yaxes(autorange="reversed", showgrid=False)
     figure.update_xaxes(title_text="rms error / noise", range=[0.0, 1.16 * max([*values, 1.2])])
-    return finished(figure, 90 + 46 * (len(steps) + 1), barmode="overlay", bargap=0.3)
+    return with_layout(figure, 90 + 46 * (len(steps) + 1), barmode="overlay", bargap=0.3)
 
 
 def _broken(name: str) -> str:
@@ -48,7 +49,7 @@ def _broken(name: str) -> str:
 
 
 def ranking(diagnosis: Diagnosis, count: int = RANKED) -> go.Figure:
-    """Return the share of the excess error that each effect removes, the accepted ones filled."""
+    """Draw the share of the excess error that each effect removes; bars of accepted effects are filled."""
     found = diagnosis.ranking[:count]
     same = {name for names in diagnosis.equivalent for name in names}
     figure = go.Figure()
@@ -69,7 +70,7 @@ def ranking(diagnosis: Diagnosis, count: int = RANKED) -> go.Figure:
         )
     figure.update_yaxes(autorange="reversed", showgrid=False)
     figure.update_xaxes(title_text="excess error removed [%]", range=[0.0, 102.0])
-    return finished(figure, 90 + 30 * len(found), barmode="overlay", bargap=0.3)
+    return with_layout(figure, 90 + 30 * len(found), barmode="overlay", bargap=0.3)
 
 
 def _label(one: Candidate, same: set[str]) -> str:
@@ -81,8 +82,8 @@ def _equivalent_bar() -> dict[str, Any]:
     return {"color": "white", "line": {"color": AFTER, "width": 1}, "pattern": {"shape": "x", "fgcolor": AFTER, "size": 6}}
 
 
-def shifts(estimates: Sequence[Estimate]) -> go.Figure | None:
-    """Return how far each constant moved against the arm file [%], with its 90 % interval; None where none had a value."""
+def constant_changes(estimates: Sequence[Estimate]) -> go.Figure | None:
+    """Draw the change of each constant against the arm file [%] with its 90 % interval; None where none had a value."""
     shown = [e for e in estimates if e.nominal and all(map(math.isfinite, (e.nominal, e.value, e.low, e.high)))]
     if not shown:
         return None
@@ -106,4 +107,4 @@ def shifts(estimates: Sequence[Estimate]) -> go.Figure | None:
     figure.add_vline(x=0.0, line={"color": INK, "width": 1.2, "dash": "dot"})
     figure.update_yaxes(autorange="reversed")
     figure.update_xaxes(title_text="change against the arm file [%]")
-    return finished(figure, 90 + 26 * len(shown))
+    return with_layout(figure, 90 + 26 * len(shown))

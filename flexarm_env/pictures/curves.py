@@ -1,4 +1,4 @@
-"""Figures for print: measured against model with residuals, the falling error, and the loop as a whole."""
+"""Figures for print: measured and modelled signals with residuals, the error after each step, and the loop as a whole."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from matplotlib.figure import Figure
 from flexarm_env.errors import InputError
 from flexarm_env.identify.results import Candidate, Comparison, Diagnosis, Replay
 from flexarm_env.pictures import words
+from flexarm_env.pictures.highlight import ZOOM, most_informative_window, replay_of
 from flexarm_env.pictures.style import AFTER, BEFORE, INK, MEASURED, QUIET, STYLE
-from flexarm_env.pictures.telling import ZOOM, most_telling, replay_of
 
 P = ParamSpec("P")
 BARS = 6
@@ -51,13 +51,13 @@ def save(figure: Figure, stem: Path) -> list[Path]:
 
 @_styled
 def overlay(before: Comparison, after: Comparison, recording: str, names: tuple[str, str]) -> Figure:
-    """Return measured and modelled signals of a recording, one above the other, each with its residual.
+    """Draw measured and modelled signals of a recording, one above the other, each with its residual.
 
     Args:
-        before: the arm as it came.
-        after: the corrected arm.
-        recording: its name.
-        names: what the two arms are called in the legend.
+        before: of the arm as given.
+        after: of the corrected arm.
+        recording: name of the recording.
+        names: of the two arms in the legend.
     """
     old, new = replay_of(before, recording), replay_of(after, recording)
     signals = words.signals_of(list(old.measured))
@@ -78,11 +78,11 @@ def overlay(before: Comparison, after: Comparison, recording: str, names: tuple[
 
 @_styled
 def waterfall(steps: Sequence[tuple[str, float]], free: Sequence[tuple[str, float]]) -> Figure:
-    """Return the held-out error after each step, in windows and in one free run, beside the noise.
+    """Draw the held-out error after each step, in windows and in one free run, beside the noise.
 
     Args:
         steps: name and error over noise, in windows of 1 s.
-        free: the same of the free run.
+        free: the same for the free run.
     """
     figure = Figure(figsize=(8.0, 3.2), layout="constrained")
     left, right = figure.subplots(1, 2)
@@ -93,12 +93,12 @@ def waterfall(steps: Sequence[tuple[str, float]], free: Sequence[tuple[str, floa
 
 @_styled
 def loop(before: Comparison, after: Comparison, diagnosis: Diagnosis) -> Figure:
-    """Return the loop in one picture: where the model fails, which effect it lacks, how the error falls."""
+    """Draw the loop in one picture: where the model fails, the ranking of effects, the error after each step."""
     figure = Figure(figsize=(13.0, 3.7), layout="constrained")
     grid = figure.add_gridspec(2, 3, width_ratios=[1.5, 1.0, 0.85], height_ratios=[2.0, 1.0])
     top = figure.add_subplot(grid[0, 0])
     bottom = figure.add_subplot(grid[1, 0], sharex=top)
-    recording, signal, start = most_telling(before, after)
+    recording, signal, start = most_informative_window(before, after)
     old, new = replay_of(before, recording), replay_of(after, recording)
     name = words.LABELS[signal][0]
     _curves(top, old, new, signal, ("model as given", f"with {' and '.join(diagnosis.effects) or 'new constants'}"))
@@ -133,7 +133,7 @@ def _residuals(axes: Axes, old: Replay, new: Replay, signal: str, noise: float) 
 
 
 def _fit_height(axes: Axes, start: float, stop: float) -> None:
-    """Let the curves between start and stop [s] fill the height."""
+    """Fit the y axis to the curves between start and stop [s]."""
     shown = [np.asarray(line.get_ydata())[_inside(line, start, stop)] for line in axes.get_lines()]
     low, high = min(y.min() for y in shown), max(y.max() for y in shown)
     axes.set_ylim(low - 0.06 * (high - low), high + 0.06 * (high - low))
@@ -167,7 +167,7 @@ def _ranking(axes: Axes, candidates: Sequence[Candidate]) -> None:
 
 
 def _falling(axes: Axes, steps: Sequence[tuple[str, float]], title: str) -> None:
-    """Draw lying bars, since names of effects are long and stand beside theirs whole."""
+    """Draw horizontal bars, which leave room for the long names of effects."""
     names = [name.replace("_", " ").replace(" +", "\n+") for name, _ in steps]
     values = [value for _, value in steps]
     colours = [BEFORE, *[QUIET] * (len(steps) - 2), AFTER] if len(steps) > 1 else [BEFORE]

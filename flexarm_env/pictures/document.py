@@ -1,6 +1,6 @@
 """One self-contained HTML document with Plotly figures; it needs no network.
 
-Plotly's library alone has 4.8 MB as text, so it and the figures lie in the page compressed, and the browser unpacks them.
+Plotly's library alone has 4.8 MB as text, so the page holds it and the figures compressed, and the browser unpacks them.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ function onScreen() {{
 
 
 def document(title: str, parts: Sequence[str]) -> str:
-    """Return the page with a heading and its parts."""
+    """Assemble the page from a heading and its parts."""
     return (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
         f'<meta name="viewport" content="width=device-width, initial-scale=1"><style>{CSS}</style>'
@@ -114,13 +114,13 @@ def _library() -> str:
 
 
 def figure(drawn: go.Figure, name: str, heading: str = "", caption: str = "") -> str:
-    """Return a figure with its caption.
+    """Embed a figure with its caption.
 
     Args:
-        drawn: whose height is set.
+        drawn: the figure, with its height set.
         name: unique in the page.
-        heading: what it shows.
-        caption: how to read it.
+        heading: names the quantity shown.
+        caption: explains how to read it.
     """
     place = "figure-" + "".join(c if c.isalnum() else "-" for c in name)
     plot = f'<div class="plot" id="{place}" style="height:{drawn.layout.height}px">{_packed(drawn.to_json())}</div>'
@@ -130,45 +130,45 @@ def figure(drawn: go.Figure, name: str, heading: str = "", caption: str = "") ->
 
 
 def _packed(text: str, attributes: str = "") -> str:
-    """Return text as an element that no browser shows or runs."""
+    """Compress text into an element that a browser neither shows nor runs."""
     packed = base64.b64encode(gzip.compress(text.encode(), compresslevel=9, mtime=0)).decode()
     return f'<script type="text/plain"{attributes}>{packed}</script>'
 
 
 def panels(figures: Sequence[str], wide: bool = False) -> str:
-    """Return figures side by side where there is room."""
+    """Place figures side by side where there is room."""
     return f'<div class="panels{" wide" if wide else ""}">' + "".join(figures) + "</div>"
 
 
 def section(heading: str, *parts: str) -> str:
-    """Return parts under a heading; nothing where there are none."""
+    """Place parts under a heading; an empty text where there are none."""
     inner = "\n".join(part for part in parts if part)
     return f"<h2>{escape(heading)}</h2>\n{inner}" if inner else ""
 
 
 def folded(summary: str, *parts: str) -> str:
-    """Return parts that open at a click."""
+    """Fold parts under a summary that opens at a click."""
     return f"<details><summary>{escape(summary)}</summary>" + "\n".join(parts) + "</details>"
 
 
 def paragraph(text: str, kind: str = "") -> str:
-    """Return a paragraph, of a class if one is named."""
+    """Format a paragraph, with a CSS class if one is given."""
     return f"<p{f' class={kind}' if kind else ''}>{escape(text)}</p>"
 
 
 def bullets(lines: Sequence[str]) -> str:
-    """Return lines as a list."""
+    """Format lines as a bulleted list."""
     return "<ul>" + "".join(f"<li>{escape(line)}</li>" for line in lines) + "</ul>" if lines else ""
 
 
 def table(columns: Sequence[str], rows: Sequence[Sequence[str]], words: int = 1, code: Sequence[int] = ()) -> str:
-    """Return a table.
+    """Format a table.
 
     Args:
         columns: headings.
         rows: cells.
-        words: how many of the first columns are words; the others are numbers, at the right.
-        code: indices of columns in type of one width.
+        words: number of leading columns that hold text; the others hold numbers and are aligned right.
+        code: indices of columns set in a monospaced font.
     """
 
     def kind(i: int) -> str:

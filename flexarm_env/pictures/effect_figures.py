@@ -1,4 +1,4 @@
-"""An effect's own curve, what it adds to the signals, and the run that would tell more."""
+"""Figures of one effect: its torque curve, its contribution to the signals, and the proposed next run."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import numpy as np
 import plotly.graph_objects as go
 
 from flexarm_env.experiments.next_run import NextRun
-from flexarm_env.identify.effect_curve import UNITS, EffectCurve
+from flexarm_env.identify.explain.effect_curve import UNITS, EffectCurve
 from flexarm_env.identify.results import Comparison
 from flexarm_env.pictures import words
+from flexarm_env.pictures.highlight import CLOSE, most_informative_window, replay_of
 from flexarm_env.pictures.overlays import title
-from flexarm_env.pictures.plots import STEPS_PER_NOISE, curve, digits, finished, legend
+from flexarm_env.pictures.plots import STEPS_PER_NOISE, curve, digits, legend, with_layout
 from flexarm_env.pictures.style import AFTER_LINE, BEFORE_LINE, INK, MEASURED, MEASURED_LINE
-from flexarm_env.pictures.telling import CLOSE, most_telling, replay_of
 
 
 def own_curve(found: EffectCurve) -> go.Figure:
-    """Return torque against its driver: the data's estimate, and the law as given and as fitted."""
+    """Draw torque against its driver: the estimate from the recordings, and the law as given and as fitted."""
     figure = go.Figure()
     dots = {"color": MEASURED, "size": 3, "opacity": 0.5}
     figure.add_trace(go.Scatter(x=digits(found.x), y=digits(found.y), mode="markers", marker=dots, name="data, single samples"))
@@ -46,17 +46,20 @@ def own_curve(found: EffectCurve) -> go.Figure:
     margin = 0.06 * (high - low) or 1.0
     figure.update_xaxes(title_text=f"{'arm ' if found.driver != 'time' else ''}{found.driver} [{UNITS[found.driver]}]")
     figure.update_yaxes(title_text=f"{found.quantity} [N·m]", range=[low - margin, high + margin])
-    return finished(figure, 400, top=52, **legend())
+    return with_layout(figure, 400, top=52, **legend())
 
 
 def contribution(without: Comparison, after: Comparison) -> tuple[go.Figure, str]:
-    """Return what was missing without an effect, and what the effect adds, where that is most; and which signal it is.
+    """Draw the residual without an effect and the effect's contribution, in the most informative window.
 
     Args:
-        without: the corrected arm less the effect.
-        after: the corrected arm.
+        without: of the corrected arm less the effect.
+        after: of the corrected arm.
+
+    Returns:
+        The figure, and the signal and recording shown.
     """
-    recording, signal, start = most_telling(without, after, CLOSE)
+    recording, signal, start = most_informative_window(without, after, CLOSE)
     old, new = replay_of(without, recording), replay_of(after, recording)
     inside = (old.time >= start) & (old.time <= start + CLOSE)
     step = after.noise[signal] / STEPS_PER_NOISE
@@ -64,20 +67,20 @@ def contribution(without: Comparison, after: Comparison) -> tuple[go.Figure, str
     added = new.windows[signal] - old.windows[signal]
     figure = go.Figure()
     for values, line, name in (
-        (missing, MEASURED_LINE | {"width": 7.0}, "missing without it"),
-        (added, AFTER_LINE | {"width": 2.0}, "what it adds"),
+        (missing, MEASURED_LINE | {"width": 7.0}, "residual without it"),
+        (added, AFTER_LINE | {"width": 2.0}, "its contribution"),
     ):
         figure.add_trace(curve(old.time[inside], values[inside], step, line=line, name=name))
     figure.update_xaxes(title_text="time [s]")
     figure.update_yaxes(title_text=title(signal))
-    return finished(figure, 330, "x unified", **legend()), f"{words.LABELS[signal][0]}, recording {recording}"
+    return with_layout(figure, 330, "x unified", **legend()), f"{words.LABELS[signal][0]}, recording {recording}"
 
 
 def next_input(run: NextRun) -> go.Figure:
-    """Return the command of a proposed run over time."""
+    """Draw the command of a proposed run over time."""
     kind = run.input_kind
     step = max(float(np.ptp(run.command)), 1e-9) / 2000.0
     figure = go.Figure(curve(run.time, run.command, step, line={"color": INK, "width": 1.3, "shape": "hv"}))
     figure.update_xaxes(title_text="time [s]")
     figure.update_yaxes(title_text=f"{kind} [{'A' if kind == 'current' else 'V'}]")
-    return finished(figure, 240)
+    return with_layout(figure, 240)

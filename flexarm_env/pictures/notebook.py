@@ -1,4 +1,4 @@
-"""How an arm, a recording, a comparison and a diagnosis show themselves in a notebook: short tables, without Plotly."""
+"""Notebook display of an arm, a recording, a comparison and a diagnosis: short tables, without Plotly."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SHORT_RANKING = 6
 
 @singledispatch
 def as_html(shown: object) -> str:
-    """Return a result as a piece of HTML."""
+    """Format a result as a piece of HTML."""
     raise TypeError(f"nothing shows a {type(shown).__name__}")
 
 

@@ -1,4 +1,4 @@
-"""Measured signals beside the model's, and what is left between them."""
+"""Figures of measured and modelled signals with their residuals."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from plotly.subplots import make_subplots
 
 from flexarm_env.identify.results import Comparison, Replay
 from flexarm_env.pictures import words
-from flexarm_env.pictures.plots import STEPS_PER_NOISE, Floats, curve, finished, legend
+from flexarm_env.pictures.highlight import CLOSE, most_informative_window, replay_of
+from flexarm_env.pictures.plots import STEPS_PER_NOISE, Floats, curve, legend, with_layout
 from flexarm_env.pictures.style import AFTER_LINE, BEFORE_LINE, INK, MEASURED_LINE
-from flexarm_env.pictures.telling import CLOSE, most_telling, replay_of
 from flexarm_env.recordings.recording import Recording
 
 AS_GIVEN, CORRECTED = "model as given", "corrected"
 
 
 def title(signal: str) -> str:
-    """Return "arm angle [rad]"."""
+    """Format name and unit of a signal: "arm angle [rad]"."""
     label, unit = words.LABELS[signal]
     return f"{label} [{unit}]"
 
 
 def signals(old: Replay, new: Replay | None, noise: dict[str, float]) -> go.Figure:
-    """Return measured and modelled signals of a recording, each with its residual, in windows or as one free run."""
+    """Draw measured and modelled signals of a recording, each with its residual, in windows or as one free run."""
     names = words.signals_of(list(old.measured))
     titles = [text for s in names for text in (title(s), f"{words.LABELS[s][0]}, residual [σ of noise]")]
     heights = [part for _ in names for part in (2.2, 1.0)]
@@ -51,12 +51,12 @@ def signals(old: Replay, new: Replay | None, noise: dict[str, float]) -> go.Figu
                 kinds += [kind, kind]
         band(figure, 2 * i + 2)
     figure.update_xaxes(title_text="time [s]", row=2 * len(names))
-    finished(figure, height, "x unified", top=92, **legend(1.0 + 22.0 / (height - 130)), updatemenus=[_switch(kinds)])
+    with_layout(figure, height, "x unified", top=92, **legend(1.0 + 22.0 / (height - 130)), updatemenus=[_switch(kinds)])
     return figure
 
 
 def band(figure: go.Figure, row: int) -> None:
-    """Shade what noise alone leaves: two standard deviations."""
+    """Shade the band that noise alone explains: two standard deviations."""
     figure.add_hrect(y0=-2.0, y1=2.0, line_width=0, fillcolor="#dddddd", opacity=0.6, layer="below", row=row, col=1)
 
 
@@ -72,9 +72,9 @@ def _switch(kinds: list[str]) -> dict[str, Any]:
     return {"buttons": buttons, "type": "buttons", "direction": "right", **place}
 
 
-def stretch(before: Comparison, after: Comparison | None) -> tuple[go.Figure, str]:
-    """Return measured beside modelled where the correction tells most, and what it shows in words."""
-    recording, signal, start = most_telling(before, after, CLOSE)
+def informative_window(before: Comparison, after: Comparison | None) -> tuple[go.Figure, str]:
+    """Draw measured and modelled values in the most informative window; also name its signal and recording."""
+    recording, signal, start = most_informative_window(before, after, CLOSE)
     old = replay_of(before, recording)
     inside = (old.time >= start) & (old.time <= start + CLOSE)
     step = before.noise[signal] / STEPS_PER_NOISE
@@ -89,11 +89,11 @@ def stretch(before: Comparison, after: Comparison | None) -> tuple[go.Figure, st
         figure.add_trace(curve(old.time[inside], values[inside], step, name=name, line=line))
     figure.update_xaxes(title_text="time [s]")
     figure.update_yaxes(title_text=title(signal))
-    return finished(figure, 300, "x unified", **legend()), f"{words.LABELS[signal][0]}, recording {recording}"
+    return with_layout(figure, 300, "x unified", **legend()), f"{words.LABELS[signal][0]}, recording {recording}"
 
 
 def recorded(recording: Recording) -> go.Figure:
-    """Return a recording alone: what went in, and what its sensors said."""
+    """Draw a recording alone: the command and the sensors' readings."""
     unit = "A" if recording.input_kind == "current" else "V"
     rows: list[tuple[str, Floats]] = [(f"{recording.input_kind} [{unit}]", recording.command)]
     rows += [(title(s), recording.signals[s]) for s in words.signals_of(list(recording.signals))]
@@ -105,4 +105,4 @@ def recorded(recording: Recording) -> go.Figure:
         step = max(float(np.ptp(values)), 1e-12) / 5000.0
         figure.add_trace(curve(recording.time, values, step, line={"color": INK, "width": 1.2}), i + 1, 1)
     figure.update_xaxes(title_text="time [s]", row=len(rows))
-    return finished(figure, 60 + 150 * len(rows))
+    return with_layout(figure, 60 + 150 * len(rows))

@@ -1,4 +1,4 @@
-"""The report: one self-contained page of a comparison or a diagnosis, what matters most on top."""
+"""The report: one self-contained page of a comparison or a diagnosis, with the verdict on top."""
 
 from __future__ import annotations
 
@@ -7,28 +7,29 @@ from dataclasses import dataclass, field
 from html import escape
 from typing import Any
 
-from flexarm_env.identify.effect_curve import EffectCurve
-from flexarm_env.identify.results import Comparison, Diagnosis, Estimate
+from flexarm_env.identify.calibrate.estimate import Estimate
+from flexarm_env.identify.explain.effect_curve import EffectCurve
+from flexarm_env.identify.results import Comparison, Diagnosis
 from flexarm_env.pictures import bars, effect_figures, overlays, residuals, words
 from flexarm_env.pictures.document import bullets, document, figure, folded, panels, paragraph, section, table
-from flexarm_env.pictures.telling import replay_of, worst_signals
+from flexarm_env.pictures.highlight import replay_of, worst_signals
 from flexarm_env.recordings.recording import Recording
 
-OVER_NOISE = "Held-out rms error over the noise; 1 (dotted) is perfect, hatched boxes are what a step removed."
+OVER_NOISE = "Held-out rms error over the noise; 1 (dotted) is perfect, hatched boxes are the part removed by a step."
 
 
 @dataclass(frozen=True)
 class Findings:
-    """Everything that a report shows.
+    """Contents of a report.
 
     Attributes:
-        before: the arm as it came.
+        before: comparison of the arm as given.
         recordings: of the machine, in the order of the comparison's replays.
-        after: the corrected arm.
-        diagnosis: how it was found.
-        curves: of effects that act on the hub; in an unexplained case, of what is left.
-        without: the corrected arm without each of its other new effects, by the effect's name.
-        provenance: "command_line", "version", "commit", "seed": how to redo it.
+        after: comparison of the corrected arm.
+        diagnosis: that led to the corrected arm.
+        curves: of effects that act on the hub; of the remaining torque where the verdict is unknown.
+        without: comparison of the corrected arm less one new effect, by the effect's name.
+        provenance: "command_line", "version", "commit" and "seed", which reproduce the report.
     """
 
     before: Comparison
@@ -41,7 +42,7 @@ class Findings:
 
 
 def page(found: Findings) -> str:
-    """Return the page's HTML."""
+    """Build the page's HTML."""
     before, diagnosis = found.before, found.diagnosis
     sentence = words.comparison(before) if diagnosis is None else words.verdict(diagnosis)
     parts = [paragraph(sentence, "verdict"), _glance(found), bullets((diagnosis or before).notes)]
@@ -54,13 +55,13 @@ def page(found: Findings) -> str:
 
 
 def _glance(found: Findings) -> str:
-    drawn, where = overlays.stretch(found.before, found.after)
+    drawn, where = overlays.informative_window(found.before, found.after)
     shown = [figure(drawn, "glance-where", "Where it fails", where)]
     diagnosis = found.diagnosis
     if diagnosis is not None and diagnosis.ranking:
         rivals = any(len(names) > 1 for names in diagnosis.equivalent)
-        caption = "✓ accepted; ≈ these data cannot tell it from that." if rivals else "✓ accepted."
-        shown.append(figure(bars.ranking(diagnosis, 6), "glance-which", "What is missing", caption))
+        caption = "✓ accepted; ≈ indistinguishable from it in these data." if rivals else "✓ accepted."
+        shown.append(figure(bars.ranking(diagnosis, 6), "glance-which", "Missing effect", caption))
     if diagnosis is not None:
         steps = words.steps_of(diagnosis.error, diagnosis.effects)
         shown.append(figure(bars.waterfall(steps), "glance-fall", "How the error fell", "Held out, over the noise."))
@@ -76,17 +77,17 @@ def _curves(found: Findings) -> str:
     for curve in found.curves:
         name = curve.effect.replace("_", " ") or "unexplained torque"
         caption = (
-            f"The torque on the hub that the recordings ask for, estimated without any law of friction, against {curve.driver}, "
-            f"while the hub moves{'' if curve.effect else '; less what the arm explains'}."
+            f"Torque on the hub estimated from the recordings, without any friction law, against {curve.driver}, "
+            f"while the hub moves{'' if curve.effect else '; less the torque that the arm explains'}."
         )
         shown.append(figure(effect_figures.own_curve(curve), f"curve-{curve.effect}-{curve.driver}", name, caption))
     for effect, without in found.without.items():
         assert found.after is not None
         drawn, where = effect_figures.contribution(without, found.after)
-        caption = f"Measured less the corrected model without it, and what it adds to that model ({where})."
+        caption = f"Residual of the corrected model without the effect, and the effect's contribution ({where})."
         shown.append(figure(drawn, f"share-{effect}", effect.replace("_", " "), caption))
     unknown = found.diagnosis is not None and not found.diagnosis.effects
-    heading = "What nothing explains" if unknown else "The effect's own curve"
+    heading = "Unexplained torque" if unknown else "The effect's curve"
     return section(heading, panels(shown, wide=True)) if shown else ""
 
 
@@ -96,7 +97,7 @@ def _ranking(diagnosis: Diagnosis) -> str:
     same = {name for names in diagnosis.equivalent for name in names}
     rows = []
     for one in diagnosis.ranking:
-        word = "accepted" if one.accepted else "cannot be told from it" if one.effect in same else ""
+        word = "accepted" if one.accepted else "indistinguishable from it" if one.effect in same else ""
         rows.append([one.effect, word, words.parameters_of(one.estimates) or words.NOTHING, f"{100 * one.gain:.0f} %"])
     columns = ["effect", "", "parameters (90 % interval)", "gain"]
     text = "Gain is the share of the refitted model's excess held-out error (error² − 1) that the effect removes."
@@ -115,14 +116,14 @@ def _constants(diagnosis: Diagnosis) -> str:
     values = list(diagnosis.constants.values())
     if not values:
         return ""
-    drawn = bars.shifts(values)
+    drawn = bars.constant_changes(values)
     caption = "Bars are 90 % intervals. Filled: the value in the arm file lies outside. Open: it lies inside."
     parts = [] if drawn is None else [figure(drawn, "constants", "", caption)]
     return section("Constants before and after", *parts, estimates(values))
 
 
 def estimates(found: Sequence[Estimate]) -> str:
-    """Return a table of fitted values with intervals, beside the values that they had."""
+    """Format a table of fitted values with intervals, beside the values as given."""
     rows = [
         [
             words.constant_name(e),
@@ -140,9 +141,9 @@ def _smallest(diagnosis: Diagnosis) -> str:
     rows = [
         [effect, one.parameter, words.number(one.value), words.plain_unit(one.unit)] for effect, one in diagnosis.smallest.items()
     ]
-    text = "An effect below this size could be there, and these recordings would not show it."
+    text = "An effect below this size would not be detected in these recordings."
     return (
-        section("What could still hide", paragraph(text), table(["effect", "parameter", "size", "unit"], rows, words=2))
+        section("Smallest detectable sizes", paragraph(text), table(["effect", "parameter", "size", "unit"], rows, words=2))
         if rows
         else ""
     )
@@ -157,7 +158,7 @@ def _next_run(diagnosis: Diagnosis) -> str:
 
 
 def _errors(before: Comparison, after: Comparison | None) -> str:
-    """Return the errors by signal and part, before and after."""
+    """Format the errors by signal and regime, before and after."""
     alone = len(before.replays) == 1
     rows = [r for r in before.rows if (r.recording == "all" or alone) and r.samples]
     later = {(r.recording, r.signal, r.part): r for r in after.rows} if after is not None else {}
@@ -180,7 +181,7 @@ def _residuals(found: Findings) -> str:
         label = words.LABELS[signal][0]
         shown = []
         for driver in drivers:
-            drawn = residuals.against(driver, found.before, found.after, signal)
+            drawn = residuals.versus_driver(driver, found.before, found.after, signal)
             shown.append(figure(drawn, f"{signal}-{driver.name}", f"Against {driver.name}"))
         spectrum = residuals.spectrum(found.before, found.after, signal)
         shown.append(figure(spectrum, f"{signal}-spectrum", "As spectrum", "White noise of the sensor's size is 1 throughout."))
@@ -209,4 +210,4 @@ def _redo(found: Findings) -> str:
     facts += [f"seed {made['seed']}" if made.get("seed") is not None else ""]
     command = f"<pre tabindex=0>{escape(str(made['command_line']))}</pre>" if made.get("command_line") else ""
     text = paragraph(", ".join(fact for fact in facts if fact))
-    return section("How to redo it", command, text, table(["recording", "SHA-256 of its file"], files, words=2, code=(1,)))
+    return section("How to reproduce it", command, text, table(["recording", "SHA-256 of its file"], files, words=2, code=(1,)))

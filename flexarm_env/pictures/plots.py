@@ -1,4 +1,4 @@
-"""What all figures of a page share: their look, and lines as small as the noise allows."""
+"""Shared layout of a page's figures, and curves rounded to a fraction of the noise."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from flexarm_env.pictures.style import GRID, INK
 
 Floats = NDArray[np.float64]
 
-#: Curves are drawn in steps of the noise over this: what is finer is no information, and takes half the page.
+#: Curves are rounded to the noise over this: finer digits carry no information and would double the page's size.
 STEPS_PER_NOISE = 50.0
 #: Beyond so many samples a curve is drawn by the graphics card.
 MANY = 20_000
 
 
-def finished(figure: go.Figure, height: int, hover: str = "closest", **layout: Any) -> go.Figure:
-    """Return a figure in the page's look, of a height [px]."""
+def with_layout(figure: go.Figure, height: int, hover: str = "closest", **layout: Any) -> go.Figure:
+    """Apply the page's layout to a figure of a height [px]."""
     top = layout.pop("top", 26)
     figure.update_layout(
         template="plotly_white",
@@ -37,7 +37,7 @@ def finished(figure: go.Figure, height: int, hover: str = "closest", **layout: A
 
 
 def legend(y: float = 1.0) -> dict[str, Any]:
-    """Return the layout of a legend that lies over the axes."""
+    """Lay a legend out above the axes."""
     return {
         "showlegend": True,
         "legend": {"orientation": "h", "x": 0, "y": y, "yanchor": "bottom", "itemwidth": 30, "itemsizing": "constant"},
@@ -45,20 +45,20 @@ def legend(y: float = 1.0) -> dict[str, Any]:
 
 
 def in_steps(values: Floats, step: float) -> list[float]:
-    """Return values to the last decimal that a step needs; a list, since Plotly packs arrays into text that is longer."""
+    """Round values to the last decimal that a step needs; to a list, since Plotly's text for arrays is longer."""
     finite = np.where(np.isfinite(values), values, np.nan)
     rounded: list[float] = np.round(finite, max(-math.floor(math.log10(step)), 0)).tolist()
     return rounded
 
 
 def digits(values: Floats, count: int = 4) -> list[float]:
-    """Return values to so many digits of the largest."""
+    """Round values to a number of significant digits of the largest."""
     largest = float(np.nanmax(np.abs(values), initial=1e-300, where=np.isfinite(values)))
     return in_steps(np.asarray(values, dtype=float), largest * 10.0**-count)
 
 
 def curve(time: Floats, values: Floats, step: float, **look: Any) -> Any:
-    """Return a line over time [s], its values to within a step."""
+    """Draw a line over time [s], its values rounded to a step."""
     # The page's size: even times follow from the first two.
     steps = np.diff(time)
     even = np.allclose(steps, steps[0], rtol=1e-6)
@@ -66,5 +66,5 @@ def curve(time: Floats, values: Floats, step: float, **look: Any) -> Any:
     trace: Any = go.Scatter
     if len(time) > MANY:
         trace, line = go.Scattergl, look["line"]
-        look["line"] = line | {"dash": "dash"} if "dash" in line else line  # it knows no lengths of dashes
+        look["line"] = line | {"dash": "dash"} if "dash" in line else line  # WebGL lines take no dash lengths
     return trace(y=in_steps(values, step), mode="lines", **x, **look)

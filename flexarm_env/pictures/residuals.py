@@ -1,4 +1,4 @@
-"""What is left between measurement and model, against what might drive it, and by frequency."""
+"""Figures of residuals against possible drivers (time, angle, speed, command) and by frequency."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from scipy.signal import welch
 
 from flexarm_env.identify.results import Comparison, Replay
 from flexarm_env.pictures.overlays import AS_GIVEN, CORRECTED, band
-from flexarm_env.pictures.plots import Floats, digits, finished, in_steps, legend
+from flexarm_env.pictures.plots import Floats, digits, in_steps, legend, with_layout
 from flexarm_env.pictures.style import AFTER_LINE, BEFORE_LINE, INK, REGIMES
 from flexarm_env.recordings.recording import Recording
 
 POINTS = 1300  # of a scatter
 BINS = 24
-#: Speed from the angle is taken over this [s], so that it is more than noise.
+#: Differences of the angle are taken over this [s], which keeps the speed above the noise.
 SPEED_TIME = 0.04
-#: A replay that ran away counts as so many times the noise.
+#: Bound on the residual of a diverged replay, over the noise.
 LARGEST = 1e6
 SEGMENT = 1024  # samples, of Welch's method
 
 
 @dataclass(frozen=True)
 class Driver:
-    """Something that may drive an error: what it is called, and its values, recording after recording (samples,)."""
+    """A quantity that may drive an error: name, unit, and values (samples,) of all recordings in order."""
 
     name: str
     unit: str
@@ -36,12 +36,12 @@ class Driver:
 
     @property
     def title(self) -> str:
-        """Name and unit."""
+        """Format name and unit."""
         return f"{self.name} [{self.unit}]"
 
 
 def drivers(comparison: Comparison, recordings: Sequence[Recording]) -> list[Driver]:
-    """Return time, angle, speed and command of all recordings, those that were measured."""
+    """Collect time, command, and the angle and speed where they were measured, over all recordings."""
     replays = comparison.replays
     ends = np.cumsum([0.0, *(one.time[-1] for one in replays)])
     found = [
@@ -60,7 +60,7 @@ def drivers(comparison: Comparison, recordings: Sequence[Recording]) -> list[Dri
 
 
 def _speed(one: Replay, comparison: Comparison) -> Floats | None:
-    """Return the arm's speed [rad/s] as measured."""
+    """Estimate the arm's speed [rad/s] from the measurements; None where neither speed nor angle was measured."""
     if "motor_speed" in one.measured:
         gain = comparison.arm.sensors["motor_speed"]["gain"] or 1.0
         return np.asarray(one.measured["motor_speed"] / gain / comparison.arm.constants["drive"]["gear_ratio"])
@@ -72,8 +72,8 @@ def _speed(one: Replay, comparison: Comparison) -> Floats | None:
     )
 
 
-def against(driver: Driver, before: Comparison, after: Comparison | None, signal: str) -> go.Figure:
-    """Return a signal's residual over its noise against a driver, by regime: as given above, corrected below."""
+def versus_driver(driver: Driver, before: Comparison, after: Comparison | None, signal: str) -> go.Figure:
+    """Draw a signal's residual over its noise against a driver, by regime: as given above, corrected below."""
     models = [(AS_GIVEN, before), *([(CORRECTED, after)] if after is not None else [])]
     figure = make_subplots(
         len(models), 1, shared_xaxes=True, shared_yaxes="all", vertical_spacing=0.11, subplot_titles=[m for m, _ in models]
@@ -105,11 +105,11 @@ def against(driver: Driver, before: Comparison, after: Comparison | None, signal
         band(figure, row)
     figure.update_xaxes(title_text=driver.title, row=len(models))
     figure.update_yaxes(title_text="residual [σ]")
-    return finished(figure, 200 + 130 * len(models), top=52, **legend(1.08))
+    return with_layout(figure, 200 + 130 * len(models), top=52, **legend(1.08))
 
 
 def residual(comparison: Comparison, signal: str) -> Floats:
-    """Return a signal's error over its noise (samples,), in windows of 1 s, recording after recording."""
+    """Compute a signal's error over its noise (samples,), in windows of 1 s, over all recordings in order."""
     return np.concatenate([(r.measured[signal] - r.windows[signal]) / comparison.noise[signal] for r in comparison.replays])
 
 
@@ -121,7 +121,7 @@ def _medians(x: Floats, y: Floats) -> tuple[Floats, Floats]:
 
 
 def spectrum(before: Comparison, after: Comparison | None, signal: str) -> go.Figure:
-    """Return the residual by frequency, so scaled that white noise of the sensor's size is 1 throughout."""
+    """Draw the residual's spectrum, scaled to 1 for white noise of the sensor's size."""
     figure = go.Figure()
     for name, line, comparison in ((AS_GIVEN, BEFORE_LINE, before), (CORRECTED, AFTER_LINE, after)):
         if comparison is not None:
@@ -133,11 +133,11 @@ def spectrum(before: Comparison, after: Comparison | None, signal: str) -> go.Fi
     )
     figure.update_xaxes(title_text="frequency [Hz]", type="log")
     figure.update_yaxes(title_text="residual / noise", type="log")
-    return finished(figure, 330, "x unified", **legend())
+    return with_layout(figure, 330, "x unified", **legend())
 
 
 def amplitude(comparison: Comparison, signal: str) -> tuple[Floats, Floats]:
-    """Return frequencies [Hz] and the residual's amplitude over that of white noise of the sensor's size."""
+    """Estimate the residual's amplitude spectrum over that of the sensor's white noise, with its frequencies [Hz]."""
     powers, weights = [], []
     shortest = min(len(one.time) for one in comparison.replays)
     frequency = np.zeros(0)
@@ -149,4 +149,4 @@ def amplitude(comparison: Comparison, signal: str) -> tuple[Floats, Floats]:
         powers.append(power * rate / 2.0)
         weights.append(len(off))
     whole = np.average(powers, axis=0, weights=weights)
-    return frequency[1:-1], np.sqrt(whole[1:-1])  # both ends are scaled otherwise
+    return frequency[1:-1], np.sqrt(whole[1:-1])  # Welch scales both ends differently

@@ -1,6 +1,6 @@
-"""Colours that a colour-blind reader can tell apart (Okabe and Ito, 2008), and the settings of both kinds of figures.
+"""Colours that a colour-blind reader can distinguish (Okabe and Ito, 2008), and the settings of both kinds of figures.
 
-Nothing is told by colour alone: models differ in dashes, bars in patterns, regimes in symbols.
+Nothing is encoded by colour alone: models differ in dashes, bars in patterns, regimes in symbols.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ QUIET = "#b8b8b8"
 INK = "#222222"
 GRID = "#e6e6e6"
 
-#: What each regime of motion is called, with colour and symbol; stuck, moving slowly, moving fast.
+#: Name, colour and symbol of each regime of motion: stuck, moving slowly, moving fast.
 REGIMES = (("stuck", "#222222", "diamond-open"), ("creeping", BEFORE, "x"), ("moving", AFTER, "circle"))
 
 #: Lines of a page's figures.

@@ -1,4 +1,4 @@
-"""Numbers and sentences for a person."""
+"""Numbers and sentences of results as text."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 
 from flexarm_env.arm import short_name
-from flexarm_env.identify.results import Addition, Candidate, Comparison, Diagnosis, Estimate
+from flexarm_env.identify.calibrate.estimate import Estimate
+from flexarm_env.identify.results import Addition, Candidate, Comparison, Diagnosis
 
-#: What a person calls each signal, and its unit.
+#: Label and unit of each signal.
 LABELS = {
     "arm_angle": ("arm angle", "rad"),
     "motor_speed": ("motor speed", "rad/s"),
@@ -23,7 +24,7 @@ PARTS = ("moving fast", "moving slowly", "stuck")
 
 
 def number(value: float, digits: int = 3) -> str:
-    """Return a number with that many significant digits, "–" for one that is none."""
+    """Format a number with a count of significant digits; "–" stands for nan."""
     if not math.isfinite(value):
         return NOTHING if math.isnan(value) else ("∞" if value > 0 else "−∞")
     if value == 0.0:
@@ -35,7 +36,7 @@ def number(value: float, digits: int = 3) -> str:
 
 
 def rounded(value: float, low: float, high: float) -> str:
-    """Return a value with the digits that its interval leaves meaning: down to the second of the interval's half."""
+    """Format a value down to the second significant digit of half its interval."""
     half = 0.5 * abs(high - low)
     if not (math.isfinite(half) and math.isfinite(value)) or half == 0.0 or value == 0.0:
         return number(value, 4)
@@ -44,40 +45,40 @@ def rounded(value: float, low: float, high: float) -> str:
 
 
 def interval(estimate: Estimate) -> str:
-    """Return low and high end with the digits that they have in common with the value."""
+    """Format low and high end with as many digits as the value has."""
     ends = (rounded(end, estimate.low, estimate.high) for end in (estimate.low, estimate.high))
     return " to ".join(ends)
 
 
 def value_of(estimate: Estimate) -> str:
-    """Return "0.0612 rad (0.0583 to 0.0641)"."""
+    """Format value, unit and interval: "0.0612 rad (0.0583 to 0.0641)"."""
     unit = f" {plain_unit(estimate.unit)}" if estimate.unit else ""
     return f"{rounded(estimate.value, estimate.low, estimate.high)}{unit} ({interval(estimate)})"
 
 
 def plain_unit(unit: str) -> str:
-    """Return a pint unit as print has it: N·m² for N*m**2."""
+    """Format a pint unit for print: N·m² for N*m**2."""
     text = unit.replace("**2", "²").replace("**3", "³").replace("**4", "⁴").replace("*", "·")
     return text.replace("Nm", "N·m")
 
 
 def parameters_of(estimates: Iterable[Estimate]) -> str:
-    """Return "gap = 0.0612 rad (0.0583 to 0.0641), …" of an effect's estimates."""
+    """Format an effect's estimates: "gap = 0.0612 rad (0.0583 to 0.0641), …"."""
     return ", ".join(f"{e.path.split('.')[-1]} = {value_of(e)}" for e in estimates)
 
 
 def constant_name(estimate: Estimate) -> str:
-    """Return the short name of a fitted value."""
+    """Shorten the path of a fitted value to its name."""
     return short_name(estimate.path)
 
 
 def counted(count: int, noun: str) -> str:
-    """Return "1 recording", "3 recordings"."""
+    """Format a count with its noun: "1 recording", "3 recordings"."""
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
 def sparkline(values: Sequence[float], largest: float | None = None) -> str:
-    """Return values as a row of bars, from 0 to the largest: "▁▂▇█"."""
+    """Format values as a row of bars, from 0 to the largest: "▁▂▇█"."""
     finite = [value for value in values if math.isfinite(value)]
     top = max(finite, default=0.0) if largest is None else largest
     if top <= 0.0:
@@ -86,7 +87,7 @@ def sparkline(values: Sequence[float], largest: float | None = None) -> str:
 
 
 def bar(share: float, width: int = 12) -> str:
-    """Return a lying bar of a share, 0 to 1, of a width in characters; what is not nothing shows."""
+    """Format a share, 0 to 1, as a horizontal bar of a width in characters; every positive share is visible."""
     if not share > 0.0:
         return ""
     eighths = max(round(8 * width * min(share, 1.0)), 1)
@@ -95,14 +96,14 @@ def bar(share: float, width: int = 12) -> str:
 
 
 def signals_of(rows: Sequence[str]) -> list[str]:
-    """Return the signals among names, in their usual order."""
+    """Select the signals among names, in their usual order."""
     return [name for name in LABELS if name in rows]
 
 
 def steps_of(error: Mapping[str, float], effects: Sequence[str] = ()) -> list[tuple[str, float]]:
-    """Return the error after each step that was taken: as it came, refitted, with each effect.
+    """List the error after each step: as given, constants refitted, with each effect.
 
-    The last effect's is the final error: what came after it, a last refit or another effect taken out again, is no step.
+    The last effect carries the final error, which includes the last refit and any effect that was removed again.
     """
     steps = [("as given", error["nominal"])]
     if "refitted" in error:
@@ -117,31 +118,31 @@ def steps_of(error: Mapping[str, float], effects: Sequence[str] = ()) -> list[tu
 
 
 def arrows(error: Mapping[str, float], effects: Sequence[str] = ()) -> str:
-    """Return "4.10 → 3.70 → 1.02"."""
+    """Format the error after each step: "4.10 → 3.70 → 1.02"."""
     return " → ".join(number(value) for _, value in steps_of(error, effects))
 
 
 def accepted(diagnosis: Diagnosis) -> list[Candidate]:
-    """Return the accepted candidates in the order of the verdict."""
+    """List the accepted candidates in the order of the verdict."""
     found = {c.effect: c for c in diagnosis.ranking}
     return [found[name] for name in diagnosis.effects if name in found]
 
 
 def verdict(diagnosis: Diagnosis) -> str:
-    """Return what a diagnosis says, in a sentence or a few."""
+    """Write the verdict of a diagnosis in one to three sentences."""
     error = diagnosis.error
     final = number(error["final"])
     if diagnosis.verdict == "nothing_missing":
-        return f"Nothing is missing: the arm explains these recordings to {final} × the noise."
+        return f"No effect is missing: the arm explains these recordings to {final} × the noise."
     if diagnosis.verdict == "parameters":
-        return f"No effect is missing. The constants were off: refitted, the error falls {arrows(error)} × the noise."
+        return f"No effect is missing. The constants were wrong: after a refit the error falls {arrows(error)} × the noise."
     if diagnosis.verdict == "unknown":
         return (
-            f"Something is missing that nothing in the catalogue explains: the error stays at {final} × the noise, "
+            f"An effect is missing, and none of the catalogue explains these recordings: the error stays at {final} × the noise, "
             f"from {number(error['nominal'])} as given."
         )
     if diagnosis.verdict == "insufficient_data":
-        return f"These recordings cannot tell: the error is {final} × the noise."
+        return f"These recordings are insufficient for a diagnosis: the error is {final} × the noise."
     return " ".join([_missing(diagnosis), _doubt(diagnosis)]).strip()
 
 
@@ -155,11 +156,11 @@ def _missing(diagnosis: Diagnosis) -> str:
 
 def _doubt(diagnosis: Diagnosis) -> str:
     rivals = [(names[0], names[1:]) for names in diagnosis.equivalent if len(names) > 1]
-    return " ".join(f"These data cannot tell {name} from {' or '.join(others)}." for name, others in rivals)
+    return " ".join(f"These data cannot distinguish {name} from {' or '.join(others)}." for name, others in rivals)
 
 
 def addition(result: Addition) -> str:
-    """Return what an added effect did, in a sentence."""
+    """Write the parameters and the error reduction of an added effect in two sentences."""
     own = [e for e in result.estimates if e.path.startswith(f"effects.{result.effect}.")]
     falls = result.error["final"] < result.error["refitted"]
     change = arrows(result.error, [result.effect])
@@ -170,7 +171,7 @@ def addition(result: Addition) -> str:
 
 
 def comparison(result: Comparison) -> str:
-    """Return how far an arm is from recordings, in a sentence."""
+    """Write an arm's error on recordings in one sentence."""
     return (
         f"Arm '{result.arm.name}' misses by {number(result.error)} × the noise in windows of 1 s, "
         f"by {number(result.free_run)} × in one free run; 1 is perfect."

@@ -1,4 +1,4 @@
-"""The arm seen from above, with its command and its strain: for people to watch, as a window or as pixels."""
+"""Animation of the arm seen from above, with its command and its strain, in a window or as pixels."""
 
 from __future__ import annotations
 

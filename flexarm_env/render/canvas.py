@@ -1,4 +1,4 @@
-"""Lines, shapes and text on a surface that needs no display."""
+"""Lines, shapes and text drawn on a surface in memory."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from flexarm_env.render.style import GAGE, INK
 Colour = tuple[int, int, int]
 Point = tuple[float, float]
 
-#: The surface is this much finer than the picture, and shrunk at the end, so that edges are smooth.
+#: Supersampling: the surface is this much finer than the picture and scaled down at the end, for smooth edges.
 FINER = 2
-#: Text is this much finer still, because pygame sets each letter on a whole pixel.
+#: Further supersampling of text, because pygame sets each letter on a whole pixel.
 TEXT_FINER = 3
-#: Height of pygame's default font when asked for height 1, over that of a common font.
+#: Height of pygame's default font at a nominal height of 1, over that of a common font.
 FONT_HEIGHT = 1.45
 DASH, GAP = 7.0, 5.0  # [pixels]
 
 
 class Canvas:
-    """A picture in the making; all places and sizes are in pixels of the finished one, x to the right and y down.
+    """A picture being drawn; all positions and sizes are in pixels of the finished one, x to the right and y down.
 
     Args:
         pygame: the module.
@@ -39,7 +39,7 @@ class Canvas:
         self.surface.fill(background)
 
     def box(self, left: float, top: float, width: float, height: float, colour: Colour, radius: float = 0.0) -> None:
-        """Fill a rectangle with corners of a radius."""
+        """Fill a rectangle with rounded corners."""
         place = self.pygame.Rect(*(round(FINER * number) for number in (left, top, width, height)))
         self.pygame.draw.rect(self.surface, colour, place, border_radius=round(FINER * radius))
 
@@ -69,7 +69,7 @@ class Canvas:
             self.band(ends, width, colour)
 
     def band(self, points: Matrix, width: float, colour: Colour) -> None:
-        """Draw a smooth curve through (k, 2) points, k > 1, with that width across it everywhere."""
+        """Draw a smooth curve of constant width through (k, 2) points, k > 1."""
         along = np.gradient(points, axis=0)
         across = np.column_stack([-along[:, 1], along[:, 0]])
         across *= width / 2 / np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-9)[:, None]
@@ -86,13 +86,13 @@ class Canvas:
         self.surface.blit(ink, ink.get_rect(**{anchor: (FINER * at[0], FINER * at[1])}))
 
     def finished(self) -> Any:
-        """Return the picture as a surface of the finished size."""
+        """Scale the surface down to the finished size."""
         return self.pygame.transform.smoothscale(self.surface, self.size)
 
 
 @functools.lru_cache(maxsize=128)
 def _ink(pygame: Any, words: str, colour: Colour, size: int) -> Any:
-    # No font outlives this call: another user of pygame in this process may end them all at any time.
+    # No font outlives this call: other code in this process may quit pygame's fonts at any time.
     pygame.font.init()
     font = pygame.font.Font(None, round(FONT_HEIGHT * FINER * TEXT_FINER * size))
     ink = font.render(words, True, colour)

@@ -12,7 +12,7 @@ from flexarm_env.render.scene import Scene
 from flexarm_env.render.style import BEAM, COLUMN, FREE, INK, PANEL, PAPER, QUIET, RULE, STUCK, TARGET
 
 SPAN = 5.0  # of the strain's curve [s]
-LEAST_STRAIN = 0.2  # that the strain's axis reaches at least [V]
+LEAST_STRAIN = 0.2  # smallest half range of the strain's axis [V]
 
 
 def draw_readings(canvas: Canvas, scene: Scene) -> None:
@@ -91,6 +91,6 @@ def _in_panel(seconds: Matrix, shares: Matrix) -> Matrix:
 
 
 def _round_up(value: float) -> float:
-    """The next of 1, 2, 3, 5, 7, 10, …, so that the axis changes seldom."""
+    """Round up to the next of 1, 2, 3, 5, 7, 10, …, which keeps the axis from changing often."""
     power = 10.0 ** math.floor(math.log10(value))
     return power * next(step for step in (1, 2, 3, 5, 7, 10) if value <= step * power * (1 + 1e-9))

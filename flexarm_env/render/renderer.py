@@ -19,14 +19,14 @@ from flexarm_env.render.top_view import draw_arm, draw_bench
 
 
 class Renderer:
-    """Draws scenes.
+    """Renderer of scenes.
 
     Args:
         mode: "human" opens a window, "rgb_array" needs no display.
         length: from the hub to the tip [m].
-        fps: pictures per second at which a window shows them.
+        fps: pictures per second of a window.
         gages: positions of the strain gages along the beam [m].
-        exaggeration: the beam is drawn this many times as bent as it is; the picture says so.
+        exaggeration: factor on the drawn deflection; the picture states it.
 
     Raises:
         InputError: for an unknown mode, or a length, rate or factor that is not positive.

@@ -1,4 +1,4 @@
-"""What one picture shows, and how the beam's shape comes from the plant's state."""
+"""Contents of one picture, and the beam's shape from the plant's state."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class Scene:
         stuck: whether the hub sticks.
         stations: (k,) positions along the beam, from the hub to the tip [m].
         deflection: (k,) true deflection at the stations, from the hub's line [m].
-        target: angle where the tip is to go [rad], or None.
+        target: commanded angle of the tip [rad], or None.
         command: share of the limit, −1 to 1.
-        trace: times (n,) [s] and readings (n,) of the base strain [V] of the last seconds, either may be empty.
+        trace: times (n,) [s] and readings (n,) of the base strain [V] over the last seconds; both may be empty.
         title: one line.
     """
 
@@ -38,7 +38,7 @@ class Scene:
 
 
 def beam_shape(structure: Structure, stations: Matrix) -> Matrix:
-    """Return the matrix that gives the deflection from the hub's line, shape @ plant.physical() [m].
+    """Build the matrix of the beam's deflection from the hub's line: shape @ plant.physical() [m].
 
     Args:
         structure: the arm's linear quantities.

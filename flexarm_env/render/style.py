@@ -1,4 +1,4 @@
-"""Where things stand in the picture, and colours that a colour-blind reader can tell apart (Okabe and Ito, 2008)."""
+"""Layout of the picture, and colours that a colour-blind reader can distinguish (Okabe and Ito, 2008)."""
 
 from __future__ import annotations
 

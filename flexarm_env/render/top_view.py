@@ -18,13 +18,13 @@ NEAR = math.cos(math.radians(11.0))
 
 
 def point(angle: float, along: float, across: float = 0.0) -> Point:
-    """Return the pixel that lies along and across (counter-clockwise) the hub's line at an angle [rad], in pixels."""
+    """Convert distances along and across (counter-clockwise) the hub's line at an angle [rad] to a point, in pixels."""
     c, s = math.cos(angle), math.sin(angle)
     return HUB_AT[0] + along * c - across * s, HUB_AT[1] - along * s - across * c
 
 
 def draw_bench(canvas: Canvas, target: float | None) -> None:
-    """Draw the bench and the scale of angles; near the target [rad] its label takes the place of a tick's."""
+    """Draw the bench and the scale of angles; the label of the target [rad] replaces that of a near tick."""
     canvas.box(*TABLE, BENCH, radius=14)
     canvas.disc(HUB_AT, SCALE, RULE)
     canvas.disc(HUB_AT, SCALE - 1.5, PAPER)
@@ -39,9 +39,9 @@ def draw_arm(canvas: Canvas, scene: Scene, length: float, gages: Sequence[float]
     """Draw target, hub, the hub's line and the beam with its gages.
 
     Args:
-        canvas: what to draw on.
-        scene: what to draw.
-        length: what the straight beam's drawn length stands for [m].
+        canvas: to draw on.
+        scene: to draw.
+        length: of the beam, which the drawn length represents [m].
         gages: positions along the beam [m].
         exaggeration: factor on the deflection.
     """
@@ -65,7 +65,7 @@ def draw_arm(canvas: Canvas, scene: Scene, length: float, gages: Sequence[float]
 def _draw_target(canvas: Canvas, target: float) -> None:
     canvas.line(point(target, HUB_RADIUS), point(target, SCALE), TARGET, 1.5)
     canvas.polygon(np.array([point(target, SCALE - 1), point(target, SCALE + 9, 5), point(target, SCALE + 9, -5)]), TARGET)
-    # Left of the scale its name ends there and right of it begins, so that it stays off the scale.
+    # A label left of the scale is right-aligned, one right of it left-aligned, which keeps both off the scale.
     side = math.cos(target)
     anchor = "center" if abs(side) < 0.3 else "midleft" if side > 0 else "midright"
     x, y = point(target, SCALE + (22 if anchor == "center" else 14), 10.0)
@@ -73,7 +73,7 @@ def _draw_target(canvas: Canvas, target: float) -> None:
 
 
 def _draw_hub(canvas: Canvas, scene: Scene) -> None:
-    """A round hub moves; one that sticks is clamped between jaws, and says so."""
+    """Draw the hub: round while it moves, clamped between labelled jaws while it sticks."""
     angle = scene.hub_angle
     if not scene.stuck:
         canvas.disc(HUB_AT, HUB_RADIUS, FREE)

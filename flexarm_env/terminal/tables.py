@@ -10,9 +10,10 @@ from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from flexarm_env.identify.results import Addition, Comparison, Diagnosis, Estimate, Fit, Row
+from flexarm_env.identify.calibrate.estimate import Estimate
+from flexarm_env.identify.results import Addition, Comparison, Diagnosis, Fit, Row
 from flexarm_env.pictures import words
-from flexarm_env.pictures.telling import error_by_second
+from flexarm_env.pictures.highlight import error_by_second
 from flexarm_env.pictures.words import LABELS, NOTHING, PARTS, number
 from flexarm_env.terminal.outputs import discard_stdout
 

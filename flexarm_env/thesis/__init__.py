@@ -1,1 +1,1 @@
-"""The thesis reproduced: its claims, its figures, its misprints and what each of them changes."""
+"""Reproduction of the thesis: its claims, its figures, its misprints and the effect of each."""

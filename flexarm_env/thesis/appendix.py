@@ -1,4 +1,4 @@
-"""Appendix A: the constants from the thesis's own measurements, and from recordings made by the model where it prints none."""
+"""Appendix A: constants from the thesis's printed measurements, or from the model's recordings where none are printed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from flexarm_env.thesis.runs import Floats, Run, clock, run, square_wave
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """y = slope x + intercept, fitted by least squares, and what is left (samples,)."""
+    """y = slope x + intercept, fitted by least squares, and its residual (samples,)."""
 
     slope: float
     intercept: float
@@ -47,26 +47,26 @@ class Line:
 
 
 def proportional(x: Floats, y: Floats) -> Line:
-    """Return the line through the origin."""
+    """Fit a line through the origin."""
     slope = float(x @ y / (x @ x))
     return Line(slope, 0.0, y - slope * x)
 
 
-# Experiment 1: E over ω, thesis's kφ
+# Experiment 1: E over ω, the thesis's kφ
 
 
 def back_emf() -> tuple[Floats, Floats]:
-    """Return motor speed [rad/s] and E [V] of experiment 1 as printed."""
+    """Read motor speed [rad/s] and E [V] of experiment 1 as printed."""
     return EXPERIMENT_1[:, 5], EXPERIMENT_1[:, 4]
 
 
 def resistance_of_column() -> Floats:
-    """Armature resistance [ohm] by which each row's E follows from V_a and I_a (erratum 9)."""
+    """Compute the armature resistance [ohm] implied by each row's E, V_a and I_a (erratum 9)."""
     return np.asarray((EXPERIMENT_1[:, 0] - EXPERIMENT_1[:, 4]) / (EXPERIMENT_1[:, 1] / 1000.0))
 
 
 def motor_constants(resistance: float) -> Floats:
-    """kφ = E/ω [Vs/rad] of each row, with E = V_a − I_a R_a."""
+    """Compute kφ = E/ω [Vs/rad] of each row, with E = V_a − I_a R_a."""
     return np.asarray((EXPERIMENT_1[:, 0] - EXPERIMENT_1[:, 1] / 1000.0 * resistance) / EXPERIMENT_1[:, 5])
 
 
@@ -82,22 +82,22 @@ def power_balance() -> Line:
 
 
 def inertia_from_stopping(speed: float, stop: float, viscous: float, coulomb: float) -> float:
-    """J [kg m²] from the time to stop [s] (Appendix A, eq. 1 with ω = 0)."""
+    """Compute J [kg m²] from the time to stop [s] (Appendix A, eq. 1 with ω = 0)."""
     return viscous * stop / math.log1p(viscous * speed / coulomb)
 
 
 def inertia_from_slope(speed: float, slope: float, viscous: float, coulomb: float) -> float:
-    """J [kg m²] from the initial slope [rad/s²], −(T_f + b ω_0)/J; the thesis leaves T_f out."""
+    """Compute J [kg m²] from the initial slope [rad/s²], −(T_f + b ω_0)/J; the thesis omits T_f."""
     return -(coulomb + viscous * speed) / slope
 
 
 def coulomb_from_stopping(speed: float, stop: float, viscous: float, inertia: float) -> float:
-    """T_f [Nm] from the time to stop [s] and J [kg m²] (Appendix A, eq. 1 with ω = 0)."""
+    """Compute T_f [Nm] from the time to stop [s] and J [kg m²] (Appendix A, eq. 1 with ω = 0)."""
     return viscous * speed / math.expm1(viscous * stop / inertia)
 
 
 def run_down(speed: float, inertia: float, noise: float = 0.0, seed: int = 0) -> tuple[Floats, Floats]:
-    """Return time (samples,) [s] and speed (samples,) [rad/s] of the motor alone, running down from a speed on the model.
+    """Simulate a run-down of the motor alone: time (samples,) [s] and speed (samples,) [rad/s].
 
     Args:
         speed: initial [rad/s].
@@ -110,7 +110,7 @@ def run_down(speed: float, inertia: float, noise: float = 0.0, seed: int = 0) ->
 
 
 def fit_run_down(time: Floats, speed: Floats, coulomb: float) -> tuple[float, float]:
-    """Return b [Nms] and J [kg m²] that fit a whole run-down curve, T_f [Nm] given, as the thesis's third method does."""
+    """Fit b [Nms] and J [kg m²] to a whole run-down curve at a given T_f [Nm], the thesis's third method."""
     first = float(speed[0])
 
     def left(guess: Floats) -> Floats:
@@ -123,7 +123,7 @@ def fit_run_down(time: Floats, speed: Floats, coulomb: float) -> tuple[float, fl
 
 
 def inertias(speed: float, inertia: float) -> dict[str, float]:
-    """J [kg m²] of a simulated run-down by the thesis's three methods, and by the slope with its Coulomb torque."""
+    """Compute J [kg m²] of a simulated run-down by the thesis's three methods, and by the slope with Coulomb torque."""
     time, curve = run_down(speed, inertia)
     stop = float(np.interp(0.0, -curve[: int(np.argmin(curve > 0.0)) + 1], time[: int(np.argmin(curve > 0.0)) + 1]))
     slope = float(np.polyfit(time[:20], curve[:20], 1)[0])
@@ -141,13 +141,13 @@ def inertias(speed: float, inertia: float) -> dict[str, float]:
 
 @functools.cache
 def periodic(degrees: float) -> Run:
-    """Two periods of the combined model under the thesis's PD on a square wave of ± degrees [°]."""
+    """Run two periods of the combined model under the thesis's PD on a square wave of ± degrees [°]."""
     arm = arms.combined()
     return run(arm, make_controller("pd", arm, 0.001), target=square_wave(15.0) * degrees / 50.0)
 
 
 def energy_point(made: Run, noise: float = 0.0, seed: int = 0) -> tuple[float, float]:
-    """Return ∫|ω|dt/∫ω²dt [s/rad] and ∫P dt/∫ω²dt [Nms] over the last period of 5 s, on the motor's side.
+    """Compute ∫|ω|dt/∫ω²dt [s/rad] and ∫P dt/∫ω²dt [Nms] over the last period of 5 s, on the motor's side.
 
     Args:
         made: a periodic recording.
@@ -156,7 +156,7 @@ def energy_point(made: Run, noise: float = 0.0, seed: int = 0) -> tuple[float, f
     """
     last = made.between(made.time[-1] - 5.0, made.time[-1])
     speed = made.speed[last] + noise * np.random.default_rng(seed).standard_normal(len(made.speed[last]))
-    # the current is held from each sample to the next, so the work is current times the way over that interval
+    # the current is held from each sample to the next, so the work is current times the angle over that interval
     way = np.diff(made.signals["arm_angle"][last], append=made.signals["arm_angle"][last.stop]) * TABLE["N"]
     power = TABLE["kphi"] * np.sum(made.command[last] * way) / 0.001
     square = np.sum(speed**2)
@@ -170,7 +170,7 @@ def energy_balance(noise: float = 0.0) -> Line:
 
 
 def static_torque(rate: float = 0.05, threshold: float = 0.0, noise: float = 0.0) -> float:
-    """Return kφ times the current [Nm, motor side] at which the model's hub breaks away on a slow ramp (experiment 5).
+    """Measure kφ times the current [Nm, motor side] at which the model's hub breaks away on a slow ramp (experiment 5).
 
     Args:
         rate: of the current [A/s].
@@ -188,7 +188,7 @@ def static_torque(rate: float = 0.05, threshold: float = 0.0, noise: float = 0.0
 
 
 def split() -> dict[str, float]:
-    """Motor's and arm's parts of friction (Appendix A, last section): Nm and Nms on each one's own side."""
+    """Split friction between motor and arm (Appendix A, last section): Nm and Nms, each on its own side."""
     N = TABLE["N"]
     coulomb, viscous = MOTOR_COULOMB / (1.0 + 1.0 / N), MOTOR_VISCOUS / (1.0 + 1.0 / N**2)
     return {
@@ -202,7 +202,7 @@ def split() -> dict[str, float]:
 
 
 def rows_of_experiment_3() -> list[dict[str, float]]:
-    """Each run-down of experiment 3: J by slope as printed and with T_f, the T_f that the printed J asks for, J by t_c."""
+    """Evaluate each run-down of experiment 3: J by slope as printed and with T_f, T_f implied by that J, J by t_c."""
     b, T_f = MOTOR_VISCOUS, MOTOR_COULOMB
     found = []
     for speed, stop, slope, *_ in EXPERIMENT_3:

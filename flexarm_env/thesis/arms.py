@@ -1,4 +1,4 @@
-"""The thesis's models as arms: each is the shipped arm with effects taken away, added or changed."""
+"""The thesis's models as arms: each is the shipped arm with effects removed, added or changed."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from flexarm_env.thesis.constants import TABLE
 
 @functools.cache
 def combined() -> Arm:
-    """The combined model of thesis section 3.4: pinned while it slips, clamped while friction holds the hub.
+    """Build the combined model of thesis section 3.4: pinned while it slips, clamped while friction holds the hub.
 
-    One element, no sensor noise, and the base gage at the root, where it shows M_o of eq. 4.4 itself (erratum 5 mended).
+    One element, no sensor noise, and the base gage at the root, where it measures M_o of eq. 4.4 (erratum 5 corrected).
     """
     arm = Arm.load("thesis")
     quiet = {path: 0.0 for signal in arm.sensors for path in (f"sensors.{signal}.noise", f"sensors.{signal}.resolution")}
@@ -22,32 +22,32 @@ def combined() -> Arm:
 
 @functools.cache
 def unlimited() -> Arm:
-    """The combined model whose drive gives any current (thesis Figs. 4.4 and 4.14)."""
+    """Build the combined model without a limit of current (thesis Figs. 4.4 and 4.14)."""
     return combined().with_values({"drive.limit": 0.0})
 
 
 @functools.cache
 def coulomb_only() -> Arm:
-    """Pinned beam with Coulomb friction and no static friction above it (thesis Fig. 3.5)."""
+    """Build the pinned beam with Coulomb friction and no static friction above it (thesis Fig. 3.5)."""
     return combined().without_effect("stiction")
 
 
 @functools.cache
 def pinned_only() -> Arm:
-    """Pinned beam without dry friction (thesis section 4.2); viscous friction stays."""
+    """Build the pinned beam without dry friction (thesis section 4.2); viscous friction stays."""
     return coulomb_only().without_effect("coulomb")
 
 
 def lighter_motor(arm: Arm, change: float) -> Arm:
-    """The arm with the motor's inertia changed [kg m²] (thesis Fig. 3.6)."""
+    """Change the arm's motor inertia [kg m²] (thesis Fig. 3.6)."""
     return arm.with_values({"drive.motor_inertia": arm.value("drive.motor_inertia") + change})
 
 
 def damped_beam(torque_per_rate: float = 0.003) -> Arm:
-    """The combined model with damping in the beam (thesis Fig. 3.9).
+    """Build the combined model with damping in the beam (thesis Fig. 3.9).
 
-    The thesis does not say where its 0.003 Nms act. Here they damp bending: a beam of stiffness EI/L [Nm/rad] whose
-    damping is 0.003 Nms/rad has the Kelvin-Voigt time 0.003 L/EI.
+    The thesis does not state the location of its 0.003 Nms. Here they damp bending: a beam of stiffness EI/L [Nm/rad] and
+    damping 0.003 Nms/rad has the Kelvin-Voigt time 0.003 L/EI.
 
     Args:
         torque_per_rate: damping [Nms].
@@ -58,16 +58,16 @@ def damped_beam(torque_per_rate: float = 0.003) -> Arm:
 
 
 def loaded(mass: float = 0.3) -> Arm:
-    """The combined model with a payload [kg] (thesis Fig. 3.10)."""
+    """Build the combined model with a payload [kg] (thesis Fig. 3.10)."""
     return combined().with_effect("payload", mass=mass)
 
 
 def rigid(inertia: float | None = None, gap: float = 0.0) -> Arm:
-    """The rigid model of chapter 2 (eqs. 2.1 to 2.14).
+    """Build the rigid model of chapter 2 (eqs. 2.1 to 2.14).
 
     Args:
-        inertia: J_a of arm and hub [kg m²]; by default that of the beam, m L³/3, and the hub, which is 10 % below the
-            0.158 of Table 2.1 (erratum 7).
+        inertia: J_a of arm and hub [kg m²]; by default that of the beam, m L³/3, plus the hub, 10 % below the 0.158 of
+            Table 2.1 (erratum 7).
         gap: backlash Δθ [rad, motor side].
     """
     arm = combined()
@@ -79,12 +79,12 @@ def rigid(inertia: float | None = None, gap: float = 0.0) -> Arm:
 
 
 def beam_inertia(arm: Arm) -> float:
-    """Inertia of the beam about the hub's axis, m L³/3 [kg m²]."""
+    """Compute the inertia of the beam about the hub's axis, m L³/3 [kg m²]."""
     return arm.value("beam.mass_per_length") * arm.value("beam.length") ** 3 / 3.0
 
 
 def motor_alone(inertia: float = TABLE["J_m"], viscous: float = 0.0011, coulomb: float = 0.11) -> Arm:
-    """Motor and shaft without the arm (thesis Appendix A, experiments 2 and 3), as a rigid arm on a gear ratio of 1.
+    """Build motor and shaft without the arm (thesis Appendix A, experiments 2 and 3), as a rigid arm at gear ratio 1.
 
     Args:
         inertia: J [kg m²].
@@ -98,7 +98,7 @@ def motor_alone(inertia: float = TABLE["J_m"], viscous: float = 0.0011, coulomb:
 
 
 def stand_in() -> Arm:
-    """What stands where the thesis shows its rig: six elements, motor and hub as two bodies, noisy sensors.
+    """Build the stand-in for the thesis's rig: six elements, motor and hub as two bodies, noisy sensors.
 
     The rig's recordings were not printed as numbers. This arm is a finer model, not a measurement.
     """

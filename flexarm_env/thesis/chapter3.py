@@ -18,19 +18,19 @@ from flexarm_env.thesis.runs import DURATION, INTERVAL, PULSE, Floats, Run, puls
 
 #: Beginning of the pulse [s].
 START = 0.5
-#: Between these times [s] every model's hub moves on without a stop after the pulse.
+#: Between these times [s] after the pulse the hub of every model moves without a stop.
 MOVING = (1.08, 2.0)
-#: Step [s] of the clamped model: its numbers change by less than 1e-4 with a tenth of it.
+#: Step [s] of the clamped model: a tenth of it changes the results by less than 1e-4.
 CLAMPED_STEP = 1e-5
 
 
 def lighter(arm: Arm) -> Arm:
-    """J_m less 0.0003 kg m²."""
+    """Decrease J_m by 0.0003 kg m²."""
     return arms.lighter_motor(arm, -INERTIA_CHANGE)
 
 
 def heavier(arm: Arm) -> Arm:
-    """J_m and 0.0003 kg m²."""
+    """Increase J_m by 0.0003 kg m²."""
     return arms.lighter_motor(arm, INERTIA_CHANGE)
 
 
@@ -50,43 +50,43 @@ MODELS: dict[str, Callable[[], Arm]] = {
 
 @functools.cache
 def after_pulse(model: str) -> Run:
-    """One of MODELS after the pulse."""
+    """Run one of MODELS after the pulse."""
     return run(MODELS[model](), feed=pulse(START))
 
 
 @functools.cache
 def slew() -> Run:
-    """The stand-in for the rig, with its noise, under PD to 100°, at 200 Hz (Fig. 3.1)."""
+    """Run the stand-in for the rig, with noise, under PD to 100°, at 200 Hz (Fig. 3.1)."""
     arm = arms.stand_in()
     controller = make_controller("pd", arm, 0.005)
     return run(arm, controller, target=np.full(1000, np.deg2rad(100.0)), interval=0.005, noise=0)
 
 
 def moving(model: str, signal: str = "strain_mid") -> Vibration:
-    """The vibration that a signal shows while the hub moves, after the pulse."""
+    """Estimate the vibration in a signal while the hub moves, after the pulse."""
     made = after_pulse(model)
     return vibration(made.time, made.signals[signal], *MOVING, (4.0, 16.0))
 
 
 def stuck(model: str) -> Vibration:
-    """The vibration of the strain after the hub's last stop."""
+    """Estimate the vibration of the strain after the hub's last stop."""
     made = after_pulse(model)
     return vibration(made.time, made.strain, made.rest(), DURATION, (0.8, 4.0))
 
 
 def double_inertia() -> float:
-    """N² J of eq. 2.1, in which the arm's inertia stands, as the thesis's clamped model has it [kg m²]."""
+    """Compute N² J of eq. 2.1, which includes the arm's inertia, as in the thesis's clamped model [kg m²]."""
     return TABLE["N"] ** 2 * TABLE["J_m"] + TABLE["J_a"]
 
 
 def hub_inertia() -> float:
-    """N² J_m + J_hub, motor and hub alone [kg m²]."""
+    """Compute N² J_m + J_hub, motor and hub alone [kg m²]."""
     return TABLE["N"] ** 2 * TABLE["J_m"] + TABLE["J_hub"]
 
 
 @functools.cache
 def clamped_pulse(inertia: float) -> Floats:
-    """The clamped model with friction after the pulse (Fig. 3.7), as fixed_step.simulate.
+    """Run the clamped model with friction after the pulse (Fig. 3.7), as fixed_step.simulate.
 
     Args:
         inertia: of its hub [kg m²].
@@ -96,7 +96,7 @@ def clamped_pulse(inertia: float) -> Floats:
 
 @functools.cache
 def clamped_control(inertia: float, gain: float, delay: float = 0.0) -> Floats:
-    """The clamped model without dry friction under eq. 4.1 (Figs. 4.2 and 4.3), as fixed_step.simulate.
+    """Run the clamped model without dry friction under eq. 4.1 (Figs. 4.2 and 4.3), as fixed_step.simulate.
 
     Args:
         inertia: of its hub [kg m²].

@@ -1,10 +1,10 @@
-"""What the thesis prints as numbers: Tables 2.1 and A.1, and the measurements of Appendix A."""
+"""Numbers printed in the thesis: Tables 2.1 and A.1, and the measurements of Appendix A."""
 
 from __future__ import annotations
 
 import numpy as np
 
-#: Table 2.1 and A.1, on the sides of the gears where the thesis has them: kg m², Nm, Nms, rad.
+#: Tables 2.1 and A.1, each on the thesis's side of the gears: kg m², Nm, Nms, rad.
 TABLE = {
     "N": 1.5,
     "J_m": 0.00193,
@@ -68,6 +68,6 @@ EXPERIMENT_3 = np.array(
         [40.82, 0.575, -86.15, 0.0005212, 0.01898, 0.001848],
     ]
 )
-#: What experiments 2 and 3 go on with: b [Nms], T_f [Nm]. Experiments 4 and 5: b, T_f, static motor, static whole.
+#: Results of experiments 2 and 3: b [Nms], T_f [Nm]. Experiments 4 and 5: b, T_f, static motor, static whole.
 MOTOR_VISCOUS, MOTOR_COULOMB = 0.0011, 0.11
 WHOLE_VISCOUS, WHOLE_COULOMB, STATIC_MOTOR, STATIC_WHOLE = 0.0452, 0.188, 0.09487, 0.2387

@@ -1,9 +1,9 @@
-"""Control without a sampling interval, as in the thesis's simulations: the product's plant, its command renewed every 10 µs.
+"""Quasi-continuous control, as in the thesis's simulations: the product's plant with a new command every 10 µs.
 
-The thesis's controllers act at each of its steps. With friction compensated, where the command switches at zero speed, the
-motion settles only below 0.1 ms, and a loop in Python would take seconds for each run. So the law of eq. 4.2 is compiled
-beside the plant. It is that of the product's `VibrationSuppression`, and tests hold it against that one, and against the
-thesis's own method with a step of 1 µs.
+The thesis's controllers act at each of its steps. With friction compensation the command switches at zero speed, and the
+result converges only for intervals below 0.1 ms; a loop in Python would take seconds for each run. So the law of eq. 4.2 is
+compiled beside the plant. Tests compare it with the product's `VibrationSuppression`, which has the same law, and with the
+thesis's own method at a step of 1 µs.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ def run(arm: Arm, law: Law, duration: float = DURATION, step: float = STEP) -> R
     """Run an arm from rest at angle 0.
 
     Args:
-        arm: one whose base gage stands at the root, so that it shows M_o.
-        law: of the current; its limit holds.
+        arm: with its base gage at the root, where it measures M_o.
+        law: of the current; its limit applies.
         duration: [s].
         step: from one command to the next [s].
 
     Returns:
-        Samples every millisecond, until the arm runs away.
+        Samples every millisecond, until the run diverges.
     """
     stride = max(round(INTERVAL / step), 1)
     plant = arm.plant(step)

@@ -21,20 +21,20 @@ LOOK: dict[str, dict[str, Any]] = {
     THIRD: {"color": INK, "lw": 1.0, "ls": (0, (1, 1))},
     POINTS: {"color": INK, "lw": 0, "marker": "o", "ms": 4.5, "mfc": "white"},
 }
-#: Sizes [inch]: width, height of a panel and of the room between two, margins left, right, below, above without legend,
-#: height of a row of the legend. Fixed, because a layout that measures its texts draws everything twice.
+#: Sizes [inch]: width, height of a panel, gap between two, margins left, right, below, above without legend, height of a
+#: row of the legend. Fixed, because an automatic layout draws everything twice.
 WIDTH, PANEL, BETWEEN, BETWEEN_OWN = 7.5, 1.4, 0.12, 0.3
 LEFT, RIGHT, BELOW, ABOVE, ROW = 0.95, 0.15, 0.5, 0.42, 0.19
-#: Height of a panel that has the figure to itself [inch].
+#: Height of the only panel of a figure [inch].
 ALONE = 2.8
 DPI = 100
-#: A resting hub must look at rest: merging points as far as the project's style allows would tilt its line.
+#: A hub at rest must be a level line: merging points as far as the project's style allows would tilt it.
 OWN_STYLE = {**STYLE, "path.simplify_threshold": 0.1, "savefig.dpi": DPI}
 COLUMNS = 2
 
 
 def draw(sheet: Sheet) -> Figure:
-    """Return the figure of a sheet."""
+    """Draw a sheet."""
     with matplotlib.rc_context(OWN_STYLE):
         own = any(panel.window is not None for panel in sheet.panels)
         figure, all_axes = _frame(sheet, own)
@@ -51,7 +51,7 @@ def draw(sheet: Sheet) -> Figure:
 
 
 def _frame(sheet: Sheet, own: bool) -> tuple[Figure, list[Axes]]:
-    """Figure and axes, from top to bottom."""
+    """Create the figure and its axes, from top to bottom."""
     count, gap = len(sheet.panels), BETWEEN_OWN if own else BETWEEN
     tall = PANEL if count > 1 else ALONE
     labels = {curve.label for panel in sheet.panels for curve in panel.curves}
@@ -105,7 +105,7 @@ def _panel(axes: Axes, panel: Panel, span: tuple[float, float] | None) -> None:
 
 
 def _legend(figure: Figure, sheet: Sheet) -> None:
-    """Title and one legend for all panels: the same label is the same curve."""
+    """Draw the title and one legend for all panels: equal labels denote the same curve."""
     shown: dict[str, Any] = {}
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):

@@ -1,4 +1,4 @@
-"""The thesis's misprints, each with its effect in numbers: as printed, and mended."""
+"""The thesis's misprints, each with its effect in numbers: as printed, and corrected."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class Erratum:
     Attributes:
         number: of docs/thesis.md.
         where: equation, section or figure.
-        says: as it stands.
-        should: as it should.
-        effect: what the two numbers are, with unit.
-        printed: that number as printed.
-        mended: and mended.
+        says: the text as printed.
+        should: the corrected text.
+        effect: quantity of the two numbers, with unit.
+        printed: its value as printed.
+        mended: its value when corrected.
         figures: that show both.
     """
 
@@ -39,12 +39,12 @@ class Erratum:
     figures: tuple[str, ...] = ()
 
     def as_json(self) -> dict[str, Any]:
-        """Plain data."""
+        """Convert to plain data."""
         return asdict(self)
 
 
 def errata() -> list[Erratum]:
-    """Return them, in order."""
+    """Evaluate all misprints, in order."""
     found = [*_equations(), *_matrices(), *_beam_torque(), *_rigid(), *_captions(), *_constants()]
     return sorted(found, key=lambda row: int(row.number))
 

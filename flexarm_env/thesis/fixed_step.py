@@ -1,8 +1,7 @@
-"""The thesis's own method: a fixed step, with friction decided at each (section 3.4, "a step size of 1e-9, using C code").
+"""The thesis's method: fixed steps with stick or slip decided at each (section 3.4, "a step size of 1e-9, using C code").
 
-It serves two ends. Row T19 measures how long that method takes and how far it is from the product's exact motion. And it
-runs the thesis's clamped model (eqs. 3.26 to 3.31), whose matrices are not those of any arm: its hub feels the beam's
-moment, but not the beam's inertia.
+It has two uses. Row T19 measures its time and its error against the product's exact motion. It also runs the thesis's clamped
+model (eqs. 3.26 to 3.31), which no arm file can represent: the beam's moment acts on the hub, but not the beam's inertia.
 """
 
 from __future__ import annotations
@@ -44,17 +43,17 @@ class Model:
     static: float
 
     def frequencies(self) -> Floats:
-        """Natural frequencies that are not zero [Hz], rising."""
+        """Compute the non-zero natural frequencies [Hz], in rising order."""
         squares = np.linalg.eigvals(np.linalg.solve(self.mass, self.stiffness)).real
         return np.sort(np.sqrt(squares[squares > 1e-3])) / (2.0 * np.pi)
 
     def without_friction(self) -> Model:
-        """The model without dry friction."""
+        """Remove dry friction from the model."""
         return Model(self.mass, self.damping, self.stiffness, self.moment, self.strain, 0.0, 0.0)
 
 
 def _rows() -> tuple[Floats, Floats]:
-    """M_o [Nm, motor side] and strain [V] per deflection and slope measured from the hub's line."""
+    """Compute M_o [Nm, motor side] and strain [V] per deflection and slope, measured from the hub's line."""
     L, EI = LENGTH, STIFFNESS
     moment = EI / TABLE["N"] * np.array([6.0 / L**2, -2.0 / L])
     x = 0.55
@@ -67,7 +66,7 @@ GAGE = 2.27
 
 
 def pinned(hub: float | None = None) -> Model:
-    """The pinned model, consistent (thesis eq. 3.9 with erratum 3 mended), on absolute coordinates.
+    """Build the consistent pinned model (thesis eq. 3.9 with erratum 3 corrected), in absolute coordinates.
 
     Args:
         hub: inertia of motor and hub [kg m²]; by default that of Table 2.1.
@@ -89,11 +88,11 @@ def pinned(hub: float | None = None) -> Model:
 
 
 def clamped(hub: float) -> Model:
-    """The thesis's clamped model with a hub that turns (eqs. 3.26 to 3.31), deflection and slope from the hub's line.
+    """Build the thesis's clamped model with a rotating hub (eqs. 3.26 to 3.31), deflection and slope from the hub's line.
 
     Args:
-        hub: N² J [kg m²]. The thesis's J is that of eq. 2.1, in which the arm counts a second time, since M_o is its
-            reaction already.
+        hub: N² J [kg m²]. The thesis's J is that of eq. 2.1, which counts the arm twice, since M_o already is its
+            reaction.
     """
     L, m = LENGTH, MASS_PER_LENGTH
     mass = np.zeros((3, 3))
@@ -119,10 +118,10 @@ def _friction() -> tuple[float, float]:
 
 
 def simulate(model: Model, law: Law, duration: float, step: float, every: float) -> Floats:
-    """March from rest at angle 0 by a fixed step.
+    """Integrate from rest at angle 0 by a fixed step.
 
     Args:
-        model: whose motion it is.
+        model: to integrate.
         law: of the current.
         duration: [s].
         step: [s].

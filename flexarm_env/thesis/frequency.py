@@ -1,8 +1,8 @@
-"""Frequency of a vibration as a signal shows it, in a stretch or at each moment, without knowing the arm's matrices.
+"""Frequency of a vibration in a signal, over an interval or over time, estimated without the arm's matrices.
 
-Within a stretch in which the hub only moves or only sticks, a signal is a sum of damped sines and exponentials. A matrix
-pencil (Hua and Sarkar, IEEE Trans. ASSP 38 (1990) 814) finds them from the samples, and a trend does not disturb it, as it
-does the phase of an analytic signal.
+While the hub only moves or only sticks, a signal is a sum of damped sines and exponentials. A matrix pencil (Hua and Sarkar,
+IEEE Trans. ASSP 38 (1990) 814) estimates them from the samples. Unlike the phase of an analytic signal it is not disturbed
+by a trend.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ from scipy.linalg import svd
 
 Floats = NDArray[np.float64]
 
-#: Samples are taken at this distance [s]: a sixth of the period of the second mode.
+#: Sampling interval [s]: a sixth of the period of the second mode.
 SPACING = 0.006
-#: Sines and exponentials in a stretch, at most: two vibrations, two real modes, a constant, and one to spare.
+#: Largest number of poles in an interval: two vibrations, two real modes, a constant, and one to spare.
 ORDER = 8
-#: Singular values below this share of the largest are rounding.
+#: Singular values below this share of the largest are rounding errors.
 ROUNDING = 1e-7
-#: What grows by more than this over a stretch is no motion of an arm, but the edge of a stick.
+#: A component that grows by more than this over an interval is no motion of an arm, but a transition to sticking.
 LARGEST_GROWTH = 1e9
-#: Fundamentals lie within, second modes above, the hub's slow motion below [Hz].
+#: Band of the fundamentals [Hz]: second modes lie above, the hub's slow motion below.
 BAND = (0.8, 16.0)
 
 
@@ -40,17 +40,17 @@ NONE = Vibration(float("nan"), 0.0, float("nan"))
 
 
 def vibration(time: Floats, signal: Floats, start: float, stop: float, band: tuple[float, float] = BAND) -> Vibration:
-    """Return the strongest vibration of a signal between two times.
+    """Estimate the strongest vibration of a signal between two times.
 
     Args:
-        time: (samples,) [s], even.
+        time: (samples,) [s], equally spaced.
         signal: (samples,).
         start: [s].
         stop: [s].
-        band: frequencies that count [Hz].
+        band: range of frequencies [Hz].
 
     Returns:
-        The vibration within the band that has the most power over the stretch; frequency nan if there is none.
+        The vibration within the band with the most power over the interval; frequency nan if there is none.
     """
     stride = max(round(SPACING / (time[1] - time[0])), 1)
     inside = np.flatnonzero((time >= start - 1e-9) & (time < stop - 1e-9))[::stride]
@@ -74,7 +74,7 @@ def vibration(time: Floats, signal: Floats, start: float, stop: float, band: tup
 
 
 def _poles(values: Floats) -> NDArray[np.complex128]:
-    """Poles of the samples (up to ORDER,)."""
+    """Estimate the poles of the samples (up to ORDER,)."""
     width = len(values) // 3
     hankel = np.lib.stride_tricks.sliding_window_view(values, width + 1)
     _, sizes, right = svd(hankel, full_matrices=False)
@@ -88,7 +88,7 @@ def _poles(values: Floats) -> NDArray[np.complex128]:
 def over_time(
     time: Floats, signal: Floats, window: float, every: float, band: tuple[float, float] = BAND
 ) -> tuple[Floats, Floats]:
-    """Return the middles of windows [s] and the frequency in each [Hz], nan where nothing vibrates."""
+    """Estimate the frequency in each window [Hz], nan without vibration; return the windows' middles [s] first."""
     starts = np.arange(time[0], time[-1] - window, every)
     found = np.array([vibration(time, signal, t, t + window, band).frequency for t in starts])
     return starts + 0.5 * window, found

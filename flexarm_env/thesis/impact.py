@@ -1,11 +1,11 @@
-"""The rigid model with backlash as the thesis has it: gears that meet without rebound (eqs. 2.13 to 2.22).
+"""The thesis's rigid model with backlash: gears that collide without rebound (eqs. 2.13 to 2.22).
 
-The product's effect `backlash` lets the teeth give way (4000 Nm/rad) and rebound; a collision that takes no time and keeps
-no rebound, eq. 2.19, is a law that no effect of the catalogue can express. So it stands here, beside the effect.
+The effect `backlash` of the catalogue has compliant teeth (4000 Nm/rad) that rebound. No effect can express eq. 2.19, an
+instantaneous, perfectly inelastic collision, so this module integrates it separately.
 
-Derived anew from the contact force, since eq. 2.22 takes the gears apart where a speed changes sign: with
-g = θ_m − N θ_a, the motor pushes the arm forward at g = 0 and back at g = −Δθ; the gears part when the force between
-them would have to pull, and meet when g comes back to one of the two.
+The conditions are derived from the contact force, since eq. 2.22 separates the gears where a speed changes sign. With
+g = θ_m − N θ_a the motor pushes the arm forward at g = 0 and back at g = −Δθ. The gears separate when the contact force
+would become tensile, and collide when g returns to one of the two.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ STEP = 1e-5  # [s]
 
 
 def speed_after(motor: float, arm: float, arm_inertia: float = TABLE["J_a"]) -> float:
-    """Motor speed after the gears have met (thesis eq. 2.19) [rad/s].
+    """Compute the motor speed after a collision of the gears (thesis eq. 2.19) [rad/s].
 
     Args:
         motor: motor speed before [rad/s].
@@ -42,18 +42,18 @@ def follow(
     rate: float = np.inf,
     printed: bool = False,
 ) -> Floats:
-    """Follow a target under the thesis's PD from rest at angle 0, teeth touching so that the motor can push forward.
+    """Follow a target under the thesis's PD from rest at angle 0, with the teeth in contact for a forward push.
 
     Args:
         target: (samples,) [rad].
         interval: from sample to sample [s].
         gap: Δθ [rad, motor side].
         arm_inertia: J_a [kg m²].
-        rate: the fastest change of the current [A/s].
-        printed: whether gears part by eq. 2.22 as printed.
+        rate: limit on the change of the current [A/s].
+        printed: whether gears separate by eq. 2.22 as printed.
 
     Returns:
-        (samples, 5): arm angle [rad], motor speed [rad/s], arm speed [rad/s], current [A], side on which gears touch
+        (samples, 5): arm angle [rad], motor speed [rad/s], arm speed [rad/s], current [A], side of contact
         (1, −1, 0 apart).
     """
     t, stride = TABLE, round(interval / STEP)
@@ -68,7 +68,7 @@ def follow(
 
 @njit(cache=True, error_model="numpy")
 def slide(speed, torque, inertia, viscous, coulomb, static, step):  # type: ignore[no-untyped-def]
-    """Speed after a step of a body with dry friction: it stops at zero, and leaves it against static friction only."""
+    """Step the speed of a body with dry friction: it stops at zero, and breaks away against static friction only."""
     if speed == 0.0:
         if abs(torque) <= static:
             return 0.0
@@ -81,7 +81,7 @@ def slide(speed, torque, inertia, viscous, coulomb, static, step):  # type: igno
 
 @njit(cache=True, error_model="numpy")
 def parts(side, before, after, torque, numbers, step):  # type: ignore[no-untyped-def]
-    """Whether gears that touch on a side part in this step; speeds and torque are the motor's."""
+    """Whether gears in contact on a side separate in this step; speeds and torque are the motor's."""
     gears, arm, rubs, viscous = numbers[0], numbers[3], numbers[7], numbers[5]
     if before == 0.0 and after == 0.0:
         return torque * side < -numbers[8]
@@ -94,7 +94,7 @@ def parts(side, before, after, torque, numbers, step):  # type: ignore[no-untype
 
 @njit(cache=True, error_model="numpy")
 def march(numbers, target, step, stride, out):  # type: ignore[no-untyped-def]
-    """Fill out (samples, 5) by a semi-implicit step of fixed length."""
+    """Fill out (samples, 5) by semi-implicit steps of fixed length."""
     gears, kphi, motor, arm, b_m, b_s, t_mf, t_af, t_ms, t_as, gap, rate, p, d, limit, _ = numbers
     inertia, viscous = motor + arm / gears**2, b_m + b_s / gears**2
     coulomb, static = t_mf + t_af / gears, t_ms + t_as / gears

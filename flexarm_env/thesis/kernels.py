@@ -1,6 +1,6 @@
-"""The compiled loops of the thesis's reproduction.
+"""Compiled loops of the reproduction.
 
-They stand alone in this file, so that numba's cache, which sees edits in this file only, is never out of date.
+They share no file with other code: numba's cache detects edits of this file only, and so is never out of date.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ PULSE_LENGTH = 0.5
 _PULSE_START, _PULSE, _TARGET, _P, _D, _HIGH, _LOW, _LOW_SPEED, _EXTRA, _LIMIT, _KPHI = range(11)
 
 _NUMBERS, _PLACES, _ROWS = types.Array(float64, 1, "C"), types.Array(int64, 1, "C"), types.Array(float64, 2, "C")
-# The plant's kernels come as addresses: nothing of them is compiled in, so what numba keeps of the loop is never stale.
+# The plant's kernels are passed as addresses: none is compiled in, so numba's cache of the loop is never stale.
 _MEASURE = types.FunctionType(types.none(_NUMBERS, _PLACES, _NUMBERS, _NUMBERS, int64))
 _LET_THROUGH = types.FunctionType(float64(_NUMBERS, _PLACES, _NUMBERS, float64))
 _CONTROL_STEP = types.FunctionType(types.none(_NUMBERS, _PLACES, _NUMBERS, float64, float64, _NUMBERS))
@@ -29,7 +29,7 @@ _PLAY = int64(
 
 @njit(cache=True, error_model="numpy")
 def current(numbers, past, k, time, angle, speed, torque):  # type: ignore[no-untyped-def]
-    """Current [A] at step k, from arm angle [rad], motor speed [rad/s] and M_o [Nm]; past remembers M_o."""
+    """Compute the current [A] at step k from arm angle [rad], motor speed [rad/s] and M_o [Nm]; past stores M_o."""
     start = numbers[_PULSE_START]
     amps = numbers[_PULSE] if start - 1e-9 <= time < start + PULSE_LENGTH - 1e-9 else 0.0
     amps += numbers[_P] * (numbers[_TARGET] - angle) - numbers[_D] * speed
@@ -82,7 +82,7 @@ def march(inverse, beam, hub_row, damping, stiffness, moment, strain, body, numb
 
 @functools.cache
 def player() -> Callable[..., int]:
-    """The compiled `play`."""
+    """Compile `play`."""
     compiled: Callable[..., int] = njit([_PLAY], error_model="numpy", cache=True)(play)
     return compiled
 
@@ -91,22 +91,22 @@ def play(
     measure: Any, let_through: Any, control_step: Any, d: Any, n: Any, s: Any, w: Any, numbers: Any, past: Any, settings: Any,
     stride: Any, out: Any,
 ) -> Any:  # fmt: skip
-    """Fill out (samples, signals + 2) with readings, current and whether the hub is stuck; return the samples filled.
+    """Fill out (samples, signals + 2) with readings, current and stuck flag; return the number of samples filled.
 
     Args:
         measure: of the plant's kernel, as are let_through and control_step.
         let_through: see above.
         control_step: see above.
         d: the plant's constants.
-        n: its places.
+        n: offsets in its arrays.
         s: its state.
-        w: its scratch.
+        w: its scratch space.
         numbers: of the law.
-        past: its memory of M_o.
-        settings: M_o per volt of the base gage [Nm/V], step [s], motor speed at which the arm has run away [rad/s], places
-            of the last command and of the mode in the state.
+        past: stored values of M_o.
+        settings: M_o per volt of the base gage [Nm/V], step [s], motor speed at which the run counts as diverged [rad/s],
+            offsets of the last command and of the mode in the state.
         stride: steps from one sample to the next.
-        out: what is filled.
+        out: array to fill.
     """
     last = out.shape[1] - 2
     shown = np.zeros(last)

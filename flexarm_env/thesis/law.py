@@ -1,4 +1,4 @@
-"""The law of the current, thesis eqs. 4.1 and 4.2."""
+"""The control law of the current, thesis eqs. 4.1 and 4.2."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Law:
     limit: float = np.inf
 
     def packed(self, step: float) -> tuple[Floats, Floats]:
-        """Return the numbers and the memory of M_o that `kernels.current` takes, for a step [s]."""
+        """Pack the law's numbers and an empty store of M_o for `kernels.current`, at a step [s]."""
         numbers = [self.pulse_start, self.pulse, self.target, self.proportional, self.derivative, self.high, self.low]
         numbers += [self.low_speed, self.compensation, self.limit, TABLE["kphi"]]
         return np.array(numbers), np.zeros(round(self.delay / step) + 1)

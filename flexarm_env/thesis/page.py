@@ -1,4 +1,4 @@
-"""The page: one table of claims, one of misprints, and every figure."""
+"""The page of the reproduction: a table of claims, one of misprints, and every figure."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ footer { margin-top: 3rem; color: #666; font-size: .85rem; }
 
 
 def page(claims: Sequence[Claim], errata: Sequence[Erratum], sheets: Mapping[str, Sequence[Sheet]], made: str) -> str:
-    """Return the page's HTML; it shows the figures' files that lie beside it.
+    """Build the page's HTML; it refers to the figures' files beside it.
 
     Args:
         claims: rows, in order.
@@ -56,7 +56,7 @@ def page(claims: Sequence[Claim], errata: Sequence[Erratum], sheets: Mapping[str
 
 
 def summary(claims: Sequence[Claim]) -> str:
-    """Return how many of the claims hold, in a sentence."""
+    """Count the claims that hold, in a sentence."""
     verdicts = [claim.verdict for claim in claims]
     count = {verdict: verdicts.count(verdict) for verdict in MARKS}
     return f"Of {len(claims)} claims {count[HOLDS]} hold, {count[IN_PART]} hold in part and {count[FAILS]} do not."

@@ -1,4 +1,4 @@
-"""The thesis's claims checked and its figures drawn, into a folder."""
+"""Reproduction of the thesis into a folder: claims checked, figures drawn."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ def reproduce(output: Path, json: Path | None = None) -> None:
     """Check every claim and draw every figure.
 
     Args:
-        output: folder for the page, the figures and the numbers; it is made.
-        json: where else the numbers go.
+        output: folder for the page, the figures and the numbers; it is created.
+        json: a second file for the numbers.
 
     Raises:
         InputError: if the folder cannot be made or written.
@@ -54,7 +54,7 @@ def reproduce(output: Path, json: Path | None = None) -> None:
 
 
 def _work(output: Path, move: Progress | None) -> tuple[list[Claim], list[Erratum], dict[str, list[Sheet]]]:
-    """Claims, misprints and figures; other processes draw while this one computes."""
+    """Compute claims, misprints and figures; other processes draw meanwhile."""
     steps = len(CHAPTERS) + len(ROWS) + 2
 
     def tell(done: int, words: str) -> None:
@@ -64,7 +64,7 @@ def _work(output: Path, move: Progress | None) -> tuple[list[Claim], list[Erratu
     began = time.monotonic()
     pool = _pool()
     try:
-        # the first time both compile, the plant here and the loops there
+        # on the first use both compile, the plant here and the loops there
         ready = pool.submit(_compile_loops)
         tell(0, "compiling")
         arms.combined().plant(INTERVAL)
@@ -89,18 +89,18 @@ def _work(output: Path, move: Progress | None) -> tuple[list[Claim], list[Erratu
 
 
 def _pool() -> ProcessPoolExecutor:
-    """Processes that draw: fresh ones, since a fork of a process with threads may hang."""
+    """Start processes for drawing: spawned, since a fork of a process with threads may hang."""
     count = max(1, min(4, (os.cpu_count() or 1) - 1))
     return ProcessPoolExecutor(count, multiprocessing.get_context("spawn"), initializer=_ignore_interrupt)
 
 
 def _ignore_interrupt() -> None:
-    """Leave Ctrl-C to the process that waits for this one."""
+    """Leave Ctrl-C to the parent process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _compile_loops() -> None:
-    """Have numba keep the loops beside the plant."""
+    """Compile the loops into numba's cache beside the plant."""
     from flexarm_env.thesis import fixed_step, impact, kernels
     from flexarm_env.thesis.law import Law
 

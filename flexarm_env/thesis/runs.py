@@ -1,4 +1,4 @@
-"""An arm under a current or a controller, sample by sample, on the product's plant."""
+"""Runs of an arm under a current or a controller, sample by sample, on the product's plant."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from flexarm_env.plant import layout
 
 Floats = NDArray[np.float64]
 
-#: Sampling and control [s]. The thesis's simulated controllers act at each of its steps; 1 ms is 1/20 of the shortest
-#: vibration's period, and its rig ran slower.
+#: Interval of sampling and control [s]. The thesis's simulated controllers act at each of its steps; 1 ms is 1/20 of the
+#: shortest vibration's period, and its rig was sampled more slowly.
 INTERVAL = 0.001
 DURATION = 5.0
 PULSE = 3.0  # [A], thesis sections 3.4 and 4
@@ -24,7 +24,7 @@ PULSE = 3.0  # [A], thesis sections 3.4 and 4
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What happened.
+    """Samples of one run.
 
     Attributes:
         time: (samples,) [s].
@@ -56,35 +56,35 @@ class Run:
         return self.signals["strain_mid"]
 
     def between(self, start: float, stop: float) -> slice:
-        """The samples from start to stop [s]."""
+        """Select the samples from start to stop [s]."""
         low, high = np.searchsorted(self.time, [start - 1e-9, stop - 1e-9])
         return slice(int(low), int(high))
 
     def rest(self) -> float:
-        """Time from which on the hub stays stuck [s]; infinite if it moves at the end."""
+        """Time of the hub's final stop [s]; infinite if it moves at the end."""
         moving = np.flatnonzero(~self.stuck)
         if not len(moving) or moving[-1] + 1 == len(self.time):
             return 0.0 if not len(moving) else float("inf")
         return float(self.time[moving[-1] + 1])
 
     def rms(self, start: float, stop: float) -> float:
-        """Strain at mid-beam between two times about its mean, rms [V]."""
+        """Compute the rms [V] of the strain at mid-beam about its mean, between two times."""
         return float(np.std(self.strain[self.between(start, stop)]))
 
 
 def clock(count: int, interval: float = INTERVAL) -> Floats:
-    """Times of samples (count,) [s]."""
+    """Compute the times of samples (count,) [s]."""
     return np.asarray(np.arange(count) * interval, dtype=np.float64)
 
 
 def pulse(start: float, duration: float = DURATION, interval: float = INTERVAL) -> Floats:
-    """Current (samples,) [A] of 3 A over 0.5 s from `start` [s] on."""
+    """Build a pulse of current (samples,) [A]: 3 A over 0.5 s from `start` [s] on."""
     time = clock(round(duration / interval), interval)
     return np.where((time >= start - 1e-9) & (time < start + 0.5 - 1e-9), PULSE, 0.0)
 
 
 def square_wave(duration: float, interval: float = INTERVAL) -> Floats:
-    """Target (samples,) [rad] of ±50° at 0.2 Hz (thesis section 2.3)."""
+    """Build a target (samples,) [rad] of ±50° at 0.2 Hz (thesis section 2.3)."""
     half_periods = np.floor(clock(round(duration / interval), interval) / 2.5 + 1e-9)
     return np.deg2rad(50.0) * np.where(half_periods % 2 == 0, 1.0, -1.0)
 
@@ -102,13 +102,13 @@ def run(
     """Run an arm from rest at angle 0, under a controller or a current alone.
 
     Args:
-        arm: with its limit of current, which holds for the sum of both.
-        controller: which sees the readings, or None.
+        arm: with its limit of current, which applies to the sum of controller and feed.
+        controller: acts on the readings; None for none.
         target: (samples,) angle to reach [rad].
-        feed: (samples,) current that is added [A].
+        feed: (samples,) added current [A].
         interval: of sampling and control [s].
-        noise: seed of the noise and the steps of the sensors that the controller sees, or None for neither.
-        start: physical state to start from (states,), by default at rest.
+        noise: seed of the sensors' noise, which comes with their resolution; None for true readings.
+        start: initial physical state (states,), by default at rest.
     """
     count = len(target) if target is not None else len(feed if feed is not None else ())
     target, feed = (np.zeros(count) if part is None else part for part in (target, feed))
@@ -138,12 +138,12 @@ def run(
     return Run(clock(len(truth), interval), command, signals, stuck, target)
 
 
-#: Motor speed [rad/s] at which a run that diverges is broken off: a hundred times the motor's largest.
+#: Motor speed [rad/s] at which a diverging run is ended: a hundred times the motor's largest.
 RUN_AWAY = 4e4
 
 
 class _Sensors:
-    """What a controller sees: readings with noise and in steps, or the truth."""
+    """Readings for a controller: with noise and resolution, or exact."""
 
     def __init__(self, arm: Arm, count: int, seed: int | None) -> None:
         tables = list(arm.sensors.values())

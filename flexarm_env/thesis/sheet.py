@@ -1,4 +1,4 @@
-"""A figure as data: panels of curves over a common axis. What draws it is in `draw`; nothing here needs Matplotlib."""
+"""A figure as data: panels of curves over a common axis, without Matplotlib; `draw` draws it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-#: Roles of curves, each with a look of its own in colour and in grey.
+#: Roles of curves, each with its own style in colour and in grey.
 MAIN, OTHER, THIRD, BEHIND = "main", "other", "third", "behind"
 #: The same, as points.
 POINTS = "points"
@@ -37,10 +37,10 @@ class Panel:
     Attributes:
         label: of the y axis, with unit.
         curves: from back to front.
-        span: ends of the y axis, or None for what the curves need.
+        span: ends of the y axis, or None for the range of the curves.
         compressed: whether the y axis is logarithmic on both sides of a linear middle.
-        lines: heights of thin lines, with what they are.
-        window: ends of an x axis of its own, or None for the common one.
+        lines: heights of thin lines, with their labels.
+        window: ends of a separate x axis, or None for the common one.
     """
 
     label: str
@@ -57,11 +57,11 @@ class Sheet:
 
     Attributes:
         number: as in the thesis, "3.5"; of Appendix A, "A.1".
-        title: what it shows.
+        title: of the figure.
         panels: from top to bottom.
         x: label of the common axis, with unit.
         span: ends of the common axis, or None for all.
-        note: what a reader must know beside it.
+        note: explanation below the figure.
     """
 
     number: str
@@ -86,5 +86,5 @@ SIGNAL = {
 
 
 def panels(runs: Sequence[tuple[Run, str, str]], *names: str) -> list[Panel]:
-    """Return one panel for each of SIGNAL named, with every run's curve: (run, label, role) from back to front."""
+    """Build one panel for each signal named, with every run's curve: (run, label, role) from back to front."""
     return [Panel(SIGNAL[name], [Curve(r.time, getattr(r, name), label, role) for r, label, role in runs]) for name in names]

@@ -13,7 +13,7 @@ from benchmarks.hidden_effects.baselines import best_fit_wins, stepwise
 from benchmarks.hidden_effects.cases import CATALOGUE, cases, sample
 from benchmarks.hidden_effects.machine import record
 from benchmarks.hidden_effects.run import run
-from benchmarks.hidden_effects.score import figures, wrong
+from benchmarks.hidden_effects.score import confusions, figures
 from benchmarks.hidden_effects.sindy import sparse_effects
 from flexarm_env.arm import Arm
 from flexarm_env.effects import catalogue
@@ -92,7 +92,7 @@ def test_the_table_counts_what_was_answered(tmp_path):
     assert found["right effect first, strength 3"].value == pytest.approx(1.0 - 1.0 / len(threes))
     assert found["false alarm on nulls"].value == pytest.approx(1.0 / 60.0)
     assert found["false alarm on nulls"].met
-    assert wrong(answers) == [(threes[0].effects[0], "viscous", 1)]
+    assert confusions(answers) == [(threes[0].effects[0], "viscous", 1)]
     answers[0]["commit"] = "abd"
     table.write(tmp_path, answers, "diagnose", 1, "command")
     assert "answered by FlexArm 0.1.0, commit abc, abd: `command`" in (tmp_path / "table.md").read_text()

@@ -28,10 +28,10 @@ def test_compare_shows_tables_and_exits_0(flexarm, identify, runs):
     ("verdict", "effects", "code", "sentence"),
     [
         ("effects", ("backlash",), 0, "Missing: backlash, gap = 0.0612 rad (0.0582 to 0.0642)"),
-        ("parameters", (), 0, "constants were off"),
-        ("nothing_missing", (), 0, "Nothing is missing"),
-        ("unknown", (), 1, "nothing in the catalogue explains"),
-        ("insufficient_data", (), 1, "cannot tell"),
+        ("parameters", (), 0, "constants were wrong"),
+        ("nothing_missing", (), 0, "No effect is missing"),
+        ("unknown", (), 1, "none of the catalogue explains"),
+        ("insufficient_data", (), 1, "insufficient for a diagnosis"),
     ],
 )
 def test_diagnose_says_its_verdict(flexarm, identify, runs, verdict, effects, code, sentence):
@@ -41,7 +41,7 @@ def test_diagnose_says_its_verdict(flexarm, identify, runs, verdict, effects, co
     assert "A slow ramp would settle it." in flexarm.out
     assert identify.log[0][3:] == (5, 1)
     if effects:
-        assert "cannot tell backlash from gear_compliance" in flexarm.out
+        assert "cannot distinguish backlash from gear_compliance" in flexarm.out
         assert "4.10 → 3.70 → 1.02" in flexarm.out
 
 

@@ -11,10 +11,11 @@ import pytest
 
 from flexarm_env import Arm, simulate
 from flexarm_env.effects import catalogue
-from flexarm_env.identify.common_scale import force_power
-from flexarm_env.identify.data import prepare
-from flexarm_env.identify.refit import as_it_is
-from flexarm_env.identify.screen import candidates, screening_base, signatures, starts_of
+from flexarm_env.identify.calibrate.calibrator import Calibrator
+from flexarm_env.identify.calibrate.common_scale import force_power
+from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.select.signatures import baseline, signatures
+from flexarm_env.identify.select.starts import candidates, starts_of
 
 #: A power of two, so that no digit changes.
 FACTOR = 64.0
@@ -69,9 +70,9 @@ def test_effects_explain_what_they_do_at_the_thesis_s_size(arm, resized: Callabl
     found = []
     for model, hidden in ((arm, machine), (resized(arm), resized(machine))):
         nominal, data = prepare(model, [simulate(hidden, kind, duration=3.0, rate=200.0, seed=3) for kind in ("square", "pulse")])
-        base = screening_base(as_it_is(nominal, data), data)
-        names = [n for n in candidates(nominal) if model.known[n].fitted]
-        starts = {n: [nominal.with_effect(n, **s) for s in starts_of(base, n)] for n in names}
+        base = baseline(Calibrator(nominal, data).uncalibrated(nominal), data)
+        names = [n for n in candidates(nominal, data) if model.known[n].fitted]
+        starts = {n: [nominal.with_effect(n, **s) for s in starts_of(nominal, n, data)] for n in names}
         found.append((starts, {n: sum(s.explained for s in signatures(base, n)) for n in names}))
     (starts, explained), (other_starts, other_explained) = found
     assert len(explained) > 20

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from flexarm_env import Arm, simulate
-from flexarm_env.identify.common_scale import best_scale, force_power, force_powers, rescaled, scale_deviation
-from flexarm_env.identify.coordinates import place_values, position
-from flexarm_env.identify.data import prepare
-from flexarm_env.identify.least_squares import cost_of
-from flexarm_env.identify.problem import Problem
-from flexarm_env.identify.refit import free_coordinates
-from flexarm_env.identify.settle import gauss_newton, settled
+from flexarm_env.identify.calibrate.common_scale import best_scale, force_power, force_powers, rescale, scale_deviation
+from flexarm_env.identify.calibrate.least_squares import cost_of
+from flexarm_env.identify.calibrate.objective import Objective, objective_at
+from flexarm_env.identify.calibrate.parameters import FitParameters, free_parameters
+from flexarm_env.identify.calibrate.refine import gauss_newton, refine
+from flexarm_env.identify.replay.dataset import Dataset, prepare
+from flexarm_env.identify.settings import SETTINGS
 
 
 @pytest.mark.parametrize(
@@ -25,22 +25,25 @@ def test_how_a_unit_goes_with_forces(unit, power):
     assert force_power(unit) == power
 
 
+def objective_of(nominal: Arm, data: Dataset) -> Objective:
+    """Of free replays, weighted by the nominal arm's errors."""
+    return objective_at(nominal, data, free_parameters(nominal, nominal, data), 0.0).weighted_by(nominal, narrow_priors=False)
+
+
 def problem_of(payload=0.0):
     """The nominal arm against its own motion under a pulse, with a payload that the recording states."""
     arm = Arm.load("thesis-fem").with_effect("cable_stiffness", stiffness=0.1, rest_angle=0.2)
     machine = arm.with_effect("payload", mass=payload) if payload else arm
     recording = replace(simulate(machine, "pulse", duration=3.0, rate=200.0, seed=1), conditions={"payload": payload})
     nominal, data = prepare(arm, [recording])
-    coordinates = free_coordinates(nominal, nominal, data)
-    problem = Problem(nominal, data, coordinates, 0.0, np.ones((1, 4)))
-    problem.weigh(nominal, held=False)
-    return problem, position(nominal, coordinates), force_powers(nominal, coordinates)
+    problem = objective_of(nominal, data)
+    return problem, problem.parameters.position(nominal), force_powers(nominal, problem.parameters)
 
 
 def test_motion_is_the_same_on_every_scale():
     problem, x, powers = problem_of()
-    other = rescaled(problem.coordinates, x, powers, 0.3)
-    arm = place_values(problem.arm, problem.coordinates, other)
+    other = rescale(problem.parameters, x, powers, 0.3)
+    arm = problem.parameters.place(problem.arm, other)
     for path, power in (("hub.inertia", 1), ("effects.cable_stiffness.stiffness", 1), ("sensors.strain_mid.gain", -1)):
         assert arm.value(path) == pytest.approx(np.exp(0.3 * power) * problem.arm.value(path), rel=1e-12)
     assert arm.value("effects.cable_stiffness.rest_angle") == problem.arm.value("effects.cable_stiffness.rest_angle")
@@ -49,29 +52,29 @@ def test_motion_is_the_same_on_every_scale():
 
 def test_priors_set_a_scale_that_nothing_else_does():
     problem, x, powers = problem_of()
-    found, curvature = best_scale(problem, rescaled(problem.coordinates, x, powers, 0.2), powers)
+    found, curvature = best_scale(problem, rescale(problem.parameters, x, powers, 0.2), powers)
     # the priors' centres are the nominal arm's values, at x = 0
     np.testing.assert_allclose(found, x, atol=1e-4)
-    priors = np.array([c.prior for c in problem.coordinates])
+    priors = np.array([c.prior for c in problem.parameters])
     assert curvature == pytest.approx(np.sum((powers / priors) ** 2), rel=1e-3)
 
 
 @pytest.mark.parametrize("wrong", [0.3, 1.0, 2.0])
 def test_a_scale_is_as_uncertain_as_the_constants_prove_wrong(wrong):
     problem, x, powers = problem_of()
-    draw, slope = np.random.default_rng(0), powers / problem.prior**2
+    draw, slope = np.random.default_rng(0), powers / problem.weights.prior**2
     off = []
     for _ in range(100):
-        true = np.where(powers, wrong * problem.prior * draw.standard_normal(len(x)), x)
+        true = np.where(powers, wrong * problem.weights.prior * draw.standard_normal(len(x)), x)
         shift = -(slope @ true) / (slope @ powers)  # to the best scale, where all is as near to the nominal arm as can be
-        off.append(shift / scale_deviation(problem, rescaled(problem.coordinates, true, powers, shift), powers))
+        off.append(shift / scale_deviation(problem, rescale(problem.parameters, true, powers, shift), powers))
     # where all proves nearly right, the constant that stands for what few cannot show keeps the deviation wide
     assert 0.6 < np.sqrt(np.mean(np.square(off))) < 1.25
 
 
 def test_a_scale_that_all_constants_agree_on_is_known_the_better():
     problem, x, powers = problem_of()
-    by_priors_alone = np.sum((powers / problem.prior) ** 2) ** -0.5
+    by_priors_alone = np.sum((powers / problem.weights.prior) ** 2) ** -0.5
     # torque constant, two inertias, gears, three of friction, two of the beam, two gages
     assert scale_deviation(problem, x, powers) == pytest.approx(by_priors_alone / np.sqrt(11), rel=0.02)
 
@@ -85,7 +88,7 @@ def test_a_known_payload_sets_the_scale():
 
 def test_a_known_torque_constant_leaves_no_scale():
     problem, x, _ = problem_of()
-    rest = [c for c in problem.coordinates if c.path != "drive.torque_constant"]
+    rest = FitParameters(tuple(p for p in problem.parameters if p.path != "drive.torque_constant"))
     powers = force_powers(problem.arm, rest)
     assert not powers.any()
     assert scale_deviation(problem, x, powers) == 0.0
@@ -96,30 +99,31 @@ def test_the_last_stretch_ends_where_the_normal_equations_say():
     matrix = draw.standard_normal((30, 4)) * np.array([1e4, 1.0, 1e-3, 1.0])
     matrix[:, 3] = matrix[:, 1]  # these two show together only
     aim, prior = draw.standard_normal(30), np.array([0.1, 0.2, 0.3, 0.4])
-    found = gauss_newton(lambda x: matrix @ x - aim, np.array([0.3, -0.2, 0.1, 0.5]), prior)
+    found = gauss_newton(lambda x: matrix @ x - aim, np.array([0.3, -0.2, 0.1, 0.5]), prior, SETTINGS.refining)
     exact = np.linalg.solve(matrix.T @ matrix + np.diag(prior**-2.0), matrix.T @ aim)
     np.testing.assert_allclose(found, exact, atol=1e-6)
 
 
 def test_a_fit_settles_where_inertia_was_shared_wrongly_between_motor_and_hub():
     problem, x, _ = problem_of()
-    paths = [c.path for c in problem.coordinates]
+    paths = [c.path for c in problem.parameters]
     motor, hub = paths.index("drive.motor_inertia"), paths.index("hub.inertia")
     there = x.copy()
     there[motor] += 0.1
     arm_side = problem.arm.constants["drive"]["gear_ratio"] ** 2 * problem.arm.value("drive.motor_inertia")
     there[hub] = np.log(1.0 - arm_side * (np.exp(0.1) - 1.0) / problem.arm.value("hub.inertia"))
-    found = settled(problem, there)
-    before, after, true = (cost_of(problem.residual(at), at, problem.prior) for at in (there, found, x))
+    found = refine(problem, there)
+    before, after, true = (cost_of(problem.residual(at), at, problem.weights.prior) for at in (there, found, x))
     assert before > true + 100.0
     assert after <= true  # noise has its own idea of the truth
 
 
 def test_a_fit_of_the_torque_constant_alone_settles():
     problem, x, _ = problem_of()
-    place = [c.path for c in problem.coordinates].index("drive.torque_constant")
-    alone = replace(problem, coordinates=[problem.coordinates[place]])
-    np.testing.assert_allclose(settled(alone, np.array([0.02])), x[place], atol=1e-3)
+    place = [c.path for c in problem.parameters].index("drive.torque_constant")
+    parameters = FitParameters((problem.parameters.items[place],))
+    alone = replace(problem, parameters=parameters, weights=replace(problem.weights, prior=parameters.priors))
+    np.testing.assert_allclose(refine(alone, np.array([0.02])), x[place], atol=1e-3)
 
 
 @pytest.mark.slow
@@ -127,12 +131,10 @@ def test_a_fit_of_the_torque_constant_alone_settles():
 def test_a_fit_that_ends_in_a_hollow_finds_the_next(seed):
     arm = Arm.load("thesis-fem")
     nominal, data = prepare(arm, [simulate(arm, "square", duration=4.0, rate=200.0, seed=seed)])
-    coordinates = free_coordinates(nominal, nominal, data)
-    problem = Problem(nominal, data, coordinates, 0.0, np.ones((1, 4)))
-    problem.weigh(nominal, held=False)
+    problem = objective_of(nominal, data)
     rough = ("drive.gear_stiffness", "drive.motor_", "hub.inertia", "effects.")
-    widths = [(0.6 if c.path.startswith(rough) else 0.1) * c.prior for c in coordinates]
-    x = position(nominal, coordinates)
-    found = settled(problem, x + widths * np.random.default_rng(seed).standard_normal(len(x)))
-    after, true = (cost_of(problem.residual(at), at, problem.prior) for at in (found, x))
+    widths = [(0.6 if c.path.startswith(rough) else 0.1) * c.prior for c in problem.parameters]
+    x = problem.parameters.position(nominal)
+    found = refine(problem, x + widths * np.random.default_rng(seed).standard_normal(len(x)))
+    after, true = (cost_of(problem.residual(at), at, problem.weights.prior) for at in (found, x))
     assert after <= true

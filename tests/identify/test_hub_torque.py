@@ -8,8 +8,8 @@ import rig
 
 from flexarm_env import Arm, Recording
 from flexarm_env.effects import catalogue
-from flexarm_env.identify.effect_curve import driver_of, effect_curve, unexplained_curve
-from flexarm_env.identify.hub_torque import acts_on_hub, hub_torque, law_torque
+from flexarm_env.identify.explain.effect_curve import driver_of, effect_curve, unexplained_curve
+from flexarm_env.identify.explain.hub_torque import acts_on_hub, hub_torque, law_torque
 
 
 def recorded(settings: dict[str, float], experiment: str, seed: int = 3) -> Recording:

@@ -7,11 +7,12 @@ import pytest
 
 from flexarm_env import Arm, Recording, fit, simulate
 from flexarm_env.experiments.next_run import propose
-from flexarm_env.identify.data import prepare
-from flexarm_env.identify.hiding import Hiding, could_hide
-from flexarm_env.identify.refit import as_it_is
+from flexarm_env.identify.calibrate.calibrator import Calibrator
+from flexarm_env.identify.explain.detection_limits import DetectionLimit, detection_limits
+from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.settings import SETTINGS
 
-LEAST = 0.2
+LEAST = SETTINGS.selecting.least_removed
 
 
 @pytest.fixture(scope="module")
@@ -24,9 +25,9 @@ def recorded(arm: Arm) -> list[Recording]:
 
 
 @pytest.fixture(scope="module")
-def hidden(arm) -> dict[str, Hiding]:
-    nominal, data = prepare(arm, recorded(arm))
-    return could_hide(as_it_is(nominal, data), data, LEAST)
+def hidden(arm) -> dict[str, DetectionLimit]:
+    calibrator = Calibrator(*prepare(arm, recorded(arm)))
+    return detection_limits(calibrator, calibrator.uncalibrated(calibrator.nominal))
 
 
 @pytest.mark.parametrize("name", ["constant_torque", "tach_filter"])

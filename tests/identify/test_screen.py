@@ -9,23 +9,18 @@ import pytest
 
 from flexarm_env import Arm, simulate
 from flexarm_env.effects import Effect
-from flexarm_env.identify.data import Data, prepare
-from flexarm_env.identify.refit import as_it_is
-from flexarm_env.identify.scales import torque_scale
-from flexarm_env.identify.screen import (
-    SCREENING_LEVELS,
-    Base,
-    first_start,
-    screening_base,
-    screening_bases,
-    signatures,
-    sized,
-    unexplained,
-)
+from flexarm_env.identify.calibrate.calibrator import Calibrator
+from flexarm_env.identify.replay.dataset import Dataset, prepare
+from flexarm_env.identify.replay.scales import torque_scale
+from flexarm_env.identify.select.signatures import Baseline, baseline, baselines, signatures
+from flexarm_env.identify.select.starts import first_start, sized
+from flexarm_env.identify.settings import SETTINGS
 from flexarm_env.parameters import Parameter
 
+LEVELS = SETTINGS.process_noise.screening
 
-def seen_by(machine: Arm, model: Arm) -> tuple[Arm, Data]:
+
+def seen_by(machine: Arm, model: Arm) -> tuple[Arm, Dataset]:
     recordings = [simulate(machine, kind, duration=4.0, rate=200.0, seed=3) for kind in ("square", "pulse")]
     return prepare(model, recordings)
 
@@ -35,7 +30,7 @@ def arm() -> Arm:
     return Arm.load("thesis-fem")
 
 
-def explained(base: Base, *names: str) -> list[float]:
+def explained(base: Baseline, *names: str) -> list[float]:
     return [sum(s.explained for s in signatures(base, name)) for name in names]
 
 
@@ -43,7 +38,7 @@ def test_what_was_tried_before_does_not_matter(arm):
     """Both add two states to the arm, and the feedback's gains for one do not suit the other."""
     machine = arm.with_effect("strain_lag", time=0.003)
     nominal, data = seen_by(machine, arm)
-    bases = [screening_base(as_it_is(nominal, data), data) for _ in range(2)]
+    bases = [baseline(Calibrator(nominal, data).uncalibrated(nominal), data) for _ in range(2)]
     alone = explained(bases[0], "strain_lag")[0]
     assert alone > 0.5
     assert explained(bases[1], "root_compliance", "strain_lag")[1] == alone
@@ -52,12 +47,12 @@ def test_what_was_tried_before_does_not_matter(arm):
 def test_a_small_steady_torque_is_looked_for_where_feedback_does_not_hide_it(arm):
     machine = arm.with_effect("base_tilt", torque=0.006, uphill=1.2)
     nominal, data = seen_by(machine, arm)
-    found = as_it_is(nominal, data)
+    found = Calibrator(nominal, data).uncalibrated(nominal)
     scale = torque_scale(nominal, data.runs)
-    hidden = screening_base(found, data, SCREENING_LEVELS[:1])
-    chosen = screening_base(found, data)
-    assert hidden.problem.torque_noise == pytest.approx(SCREENING_LEVELS[0] * scale)
-    assert chosen.problem.torque_noise < hidden.problem.torque_noise
+    hidden = baseline(found, data, LEVELS[:1])
+    chosen = baseline(found, data)
+    assert hidden.objective.torque_noise == pytest.approx(LEVELS[0] * scale)
+    assert chosen.objective.torque_noise < hidden.objective.torque_noise
     assert explained(chosen, "base_tilt")[0] > 0.2
     assert explained(hidden, "base_tilt")[0] < 0.02
 
@@ -65,11 +60,12 @@ def test_a_small_steady_torque_is_looked_for_where_feedback_does_not_hide_it(arm
 def test_errors_weigh_the_same_from_every_start(arm):
     machine = arm.with_effect("stribeck", extra=0.05, falloff_speed=0.2)
     nominal, data = seen_by(machine, arm)
-    other = as_it_is(nominal.with_values({"hub.inertia": 1.2 * nominal.value("hub.inertia")}), data)
-    first, second = screening_bases([as_it_is(nominal, data), other], data)
-    assert (second.problem.sigma == first.problem.sigma).all()
-    assert (second.problem.prior == first.problem.prior).all()
-    assert second.problem.torque_noise == first.problem.torque_noise
+    calibrator = Calibrator(nominal, data)
+    other = calibrator.uncalibrated(nominal.with_values({"hub.inertia": 1.2 * nominal.value("hub.inertia")}))
+    first, second = baselines([calibrator.uncalibrated(nominal), other], data)
+    assert (second.objective.weights.sigma == first.objective.weights.sigma).all()
+    assert (second.objective.weights.prior == first.objective.weights.prior).all()
+    assert second.objective.torque_noise == first.objective.torque_noise
     assert (second.residual != first.residual).any()
 
 
@@ -85,8 +81,8 @@ def test_a_limit_below_the_largest_command_is_seen_whatever_the_commands_size(ar
     )
     machine = model.with_effect("saturation", limit=share * largest)
     nominal, data = seen_by(machine, model)
-    base = screening_base(as_it_is(nominal, data), data)
-    before, left = (unexplained(base, r) for r in (base.residual, base.problem.residual_of(machine)))
+    base = baseline(Calibrator(nominal, data).uncalibrated(nominal), data)
+    before, left = (base.unexplained(r) for r in (base.residual, base.objective.residual_of(machine)))
     most = 1.0 - (left @ left) / (before @ before)
     assert explained(base, "saturation")[0] > 0.6 * most
 
@@ -109,5 +105,7 @@ class Shaped(Effect):
 
 def test_a_start_that_leaves_values_out_has_typical_ones(arm):
     known = replace(arm, known=arm.known.extended(Shaped))
-    assert first_start(known, "shaped", {}) == {"stiffness": 0.1, "start": 0.3}
-    assert sized(known, "shaped", first_start(known, "shaped", {}), 0.5) == {"stiffness": 0.05, "start": 0.3}
+    _, data = seen_by(arm, arm)
+    start = first_start(known, "shaped", replace(data, scales={}))
+    assert start == {"stiffness": 0.1, "start": 0.3}
+    assert sized(known, "shaped", start, 0.5) == {"stiffness": 0.05, "start": 0.3}

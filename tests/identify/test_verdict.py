@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 from flexarm_env import Arm
-from flexarm_env.identify.acceptance import Acceptance
-from flexarm_env.identify.diagnose import _verdict
-from flexarm_env.identify.hypothesis import criterion
-from flexarm_env.identify.problem import Score
+from flexarm_env.identify.replay.error_measure import Score, error_measure
+from flexarm_env.identify.select.criteria import ThresholdCriteria
+from flexarm_env.identify.select.model import Model
+from flexarm_env.identify.settings import SETTINGS
 
 
 def verdict(before: Score, first: Score, best: Score, accepted: list[str], arm: str = "thesis") -> str:
-    rules = Acceptance(first, noisy=Arm.load(arm).constants["drive"]["torque_noise"] > 0.0)
-    return _verdict(SimpleNamespace(best=best, accepted=accepted, rules=rules), before, first)
+    judges_free_run = error_measure(Arm.load(arm)).judges_free_run
+    return ThresholdCriteria(before, first, judges_free_run, SETTINGS).verdict(accepted, best)
 
 
 BEFORE, FIRST = Score(20.0, 60.0), Score(3.0, 12.0)
@@ -68,9 +68,9 @@ def test_constants_are_blamed_where_nothing_else_is_left():
 def rival(fitted: float, held: float, parameters: int = 10) -> float:
     """Its criterion on 2600 fitted and 1400 held-out samples of one signal."""
     runs = [SimpleNamespace(train=np.arange(2000) < 1300)] * 2
-    own = SimpleNamespace(coordinates=[None] * parameters)
-    hypothesis = SimpleNamespace(refit=own, fitted=Score(fitted, fitted), score=Score(held, held))
-    return criterion(hypothesis, SimpleNamespace(runs=runs, signals=["arm_angle"]))
+    own = SimpleNamespace(parameters=[None] * parameters)
+    model = Model((), own, fitted=Score(fitted, fitted), score=Score(held, held))
+    return model.bic(SimpleNamespace(runs=runs, signals=["arm_angle"]))
 
 
 def test_all_of_the_data_decide_between_rivals():

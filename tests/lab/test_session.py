@@ -128,10 +128,10 @@ def test_a_diagnosis_runs_apart_and_stops(session):
     assert isinstance(session.job, Job)
     assert session.busy
     end = time.monotonic() + 60.0
-    while session.news == 0 and time.monotonic() < end:
+    while session.revision == 0 and time.monotonic() < end:
         session.poll()
         time.sleep(0.02)
-    assert session.news > 0
+    assert session.revision > 0
     session.stop()
     assert not session.busy
     assert session.diagnosis is None

@@ -17,7 +17,7 @@ from picture_results import SIGNALS, comparison, diagnosis, recordings
 from plotly.offline import get_plotlyjs
 
 from flexarm_env.experiments.next_run import NextRun
-from flexarm_env.identify.hiding import Hiding
+from flexarm_env.identify.explain.detection_limits import DetectionLimit
 from flexarm_env.pictures.page import Findings, page
 
 PLACE = re.compile(r'id="(figure-[^"]*)" style="[^"]*"><script type="text/plain">([^<]*)</script>')
@@ -92,7 +92,7 @@ def test_the_verdict_stands_on_top():
     order = [
         "Missing: backlash",
         "Where it fails",
-        "What is missing",
+        "Missing effect",
         "How the error fell",
         "Which effect",
         "Constants",
@@ -134,15 +134,15 @@ def test_ranking_constants_and_rivals_have_their_intervals():
     words = visible(one_of(comparison(200, 0), comparison(200, 3), diagnosis=diagnosis()))
     assert "gap = 0.0612 rad (0.0583 to 0.0641)" in words
     assert "0.3291 to 0.3333" in words
-    assert "cannot be told from it" in words
+    assert "indistinguishable from it" in words
 
 
 def test_what_could_hide_and_the_next_run_are_shown_where_they_are_known():
     plain = one_of(comparison(200, 0), comparison(200, 3), diagnosis=diagnosis())
-    assert "What could still hide" not in plain
+    assert "Smallest detectable sizes" not in plain
     assert "The next run" not in plain
     run = NextRun("slow ramps", ("stiction", "stribeck"), 2.5, np.arange(50) * 0.01, np.linspace(-1.0, 1.0, 50), "current")
-    found = replace(diagnosis(), smallest={"stiction": Hiding("extra", 0.0123, "N*m")}, next_run=run)
+    found = replace(diagnosis(), smallest={"stiction": DetectionLimit("extra", 0.0123, "N*m")}, next_run=run)
     text = one_of(comparison(200, 0), comparison(200, 3), diagnosis=found)
     words = visible(text)
     assert re.search(r"stiction\s+extra\s+0.0123\s+N·m", words)

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.data import prepare
-from flexarm_env.identify.observer import innovation_sigma
-from flexarm_env.identify.problem import Problem, score
-from flexarm_env.identify.scales import torque_scale
-from flexarm_env.identify.screen import SCREENING_LEVELS
+from flexarm_env.identify.calibrate.objective import Objective, Weights
+from flexarm_env.identify.calibrate.parameters import FitParameters
+from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.replay.error_measure import score
+from flexarm_env.identify.replay.observer import innovation_sigma
+from flexarm_env.identify.replay.scales import torque_scale
 from flexarm_env.recordings.recording import Recording
 from tests.rig import SIGNALS, simulate
 
@@ -38,8 +39,8 @@ def test_the_rig_s_recordings_are_met_to_the_noise(name, experiment):
     right = arm.with_effect(name, **values)
     assert score(arm, data).free_run > 3.0
     assert score(right, data).free_run < 1.02
-    for level in SCREENING_LEVELS:  # feedback of the readings does no harm to a model that is right
+    for level in data.settings.process_noise.screening:  # feedback of the readings does no harm to a model that is right
         torque_noise = level * torque_scale(right, data.runs)
-        most = innovation_sigma(right.plant(data.interval), data.noise, torque_noise, data.interval)
-        problem = Problem(right, data, [], torque_noise, most[None, :])
+        most = innovation_sigma(right.plant(data.interval), data, torque_noise)
+        problem = Objective(right, data, FitParameters(), torque_noise, Weights(most[None, :], np.empty(0)))
         assert np.sqrt(np.mean(problem.residual_of(right) ** 2)) < 1.02

@@ -11,7 +11,7 @@ from flexarm_env.thesis.frequency import vibration
 from flexarm_env.thesis.runs import clock
 from flexarm_env.thesis.suppression import swing, with_friction
 
-#: A strain [V from peak to peak] is the same within this share; what differs by less is not called better or worse.
+#: Strains [V from peak to peak] within this share of each other count as equal, neither better nor worse.
 SAME = 0.05
 
 

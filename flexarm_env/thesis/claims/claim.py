@@ -1,4 +1,4 @@
-"""A claim of the thesis, what comes out here, and whether it holds."""
+"""A claim of the thesis, the result here, and the verdict on it."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ HOLDS, IN_PART, FAILS = "holds", "holds in part", "does not hold"
 
 @dataclass(frozen=True)
 class Part:
-    """One thing that a claim says.
+    """One statement of a claim.
 
     Attributes:
-        ours: what comes out here, with numbers.
-        holds: whether that is what the thesis says.
+        ours: the result here, with numbers.
+        holds: whether it agrees with the thesis.
         numbers: the numbers in it, by name and unit, as {"stuck [Hz]": 2.43}.
     """
 
@@ -31,10 +31,10 @@ class Claim:
     Attributes:
         key: "T1" to "T19".
         where: section or figure of the thesis.
-        words: what it says, in our words.
-        parts: what comes out of each thing that it says.
-        because: why it holds or not.
-        figures: numbers of the figures that show it.
+        words: the claim, paraphrased.
+        parts: the result for each of its statements.
+        because: reason of the verdict.
+        figures: numbers of the figures with the evidence.
     """
 
     key: str
@@ -46,17 +46,17 @@ class Claim:
 
     @property
     def verdict(self) -> str:
-        """Whether all parts hold, some or none."""
+        """Judge whether all parts hold, some or none."""
         held = [part.holds for part in self.parts]
         return HOLDS if all(held) else IN_PART if any(held) else FAILS
 
     @property
     def numbers(self) -> dict[str, float]:
-        """All numbers of all parts."""
+        """Collect the numbers of all parts."""
         return {name: value for part in self.parts for name, value in part.numbers.items()}
 
     def as_json(self) -> dict[str, Any]:
-        """Plain data."""
+        """Convert to plain data."""
         parts = [{"ours": part.ours, "holds": bool(part.holds), "numbers": dict(part.numbers)} for part in self.parts]
         row = {"claim": self.key, "where": self.where, "thesis": self.words, "verdict": self.verdict}
         return row | {"because": self.because, "parts": parts, "figures": list(self.figures)}

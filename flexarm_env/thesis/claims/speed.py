@@ -1,4 +1,4 @@
-"""Row T19: how long the thesis's method takes, and how long the product's."""
+"""Row T19: computing time of the thesis's method and of the product's."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ from flexarm_env.thesis.fixed_step import pinned, simulate
 from flexarm_env.thesis.law import Law
 from flexarm_env.thesis.runs import DURATION, INTERVAL, PULSE, Floats, pulse
 
-#: The thesis's step [s], and how long a stretch of its method is run here [s].
+#: The thesis's step [s], and the simulated time [s] that its method is run for here.
 STEP, STRETCH = 1e-9, 0.02
-#: The stretch is timed in pieces, of which the shortest time counts: what else the machine does is no part of it.
+#: The run is timed in pieces, of which the shortest counts, since other work on the machine only adds time.
 PIECES = 5
 #: Twelve hours [s].
 THESIS_SECONDS = 12.0 * 3600.0
-#: Coarser steps [s] at which the whole five seconds are run, to see how the error falls.
+#: Coarser steps [s] at which the whole five seconds are run, for the convergence of the error.
 COARSE = (1e-5, 1e-6)
 REPEATS = 20
 
 
 @dataclass(frozen=True)
 class Speed:
-    """Times (of the processor, so that other work does not count) and errors of both methods on the pulse of 3 A.
+    """Processor times and errors of both methods on the pulse of 3 A.
 
     Attributes:
         per_step: of the thesis's method here, the shortest of some [s].
         method: its five seconds here, extrapolated [s].
         product: the product's five seconds, sampled every millisecond [s].
         error_coarse: largest difference of the hub angle from the product over 5 s, for each of COARSE [rad].
-        error_fine: the same over the stretch at the thesis's step [rad].
+        error_fine: the same over the shorter run at the thesis's step [rad].
     """
 
     per_step: float
@@ -45,13 +45,13 @@ class Speed:
 
     @property
     def ratio(self) -> float:
-        """How many times the product is as fast as the thesis's method here."""
+        """Ratio of the thesis's computing time to the product's, both here."""
         return self.method / self.product
 
 
 @functools.cache
 def measure() -> Speed:
-    """Measure, on this machine."""
+    """Measure times and errors on this machine."""
     law, model = Law(pulse=PULSE), pinned()
     simulate(model, law, 1e-4, 1e-6, 1e-4)
     stretch = simulate(model, law, STRETCH, STEP, INTERVAL)
@@ -73,7 +73,7 @@ def measure() -> Speed:
 
 
 def _product() -> tuple[float, Floats]:
-    """Return the shortest of some times [s] of five seconds on the product's plant, and the hub angle (samples,) [rad]."""
+    """Time five seconds on the product's plant, the shortest of several runs [s]; also return the hub angle [rad]."""
     plant, commands = arms.combined().plant(INTERVAL), pulse(0.0)
     plant.place()
     readings = plant.replay(commands)

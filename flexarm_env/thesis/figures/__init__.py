@@ -1,4 +1,4 @@
-"""The figures, as data: by chapter of the thesis."""
+"""The figures as data, by chapter of the thesis."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Figures A.1 to A.5: the experiments of Appendix A, of which the thesis prints tables, a line and three curves."""
+"""Figures A.1 to A.5: the experiments of Appendix A, printed in the thesis as tables, a line and three curves."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SPEED = "motor speed [rad/s]"
 
 
 def sheets() -> list[Sheet]:
-    """Return them."""
+    """Build Figs. A.1 to A.5."""
     return [motor_constant(), power(), run_downs(), balance(), ramp()]
 
 

@@ -10,12 +10,12 @@ from flexarm_env.thesis.runs import Run, clock
 from flexarm_env.thesis.sheet import BEHIND, MAIN, OTHER, SIGNAL, THIRD, Curve, Panel, Sheet, panels
 
 STAND_IN = "stand-in for the rig: flexible, six elements, noise"
-#: Around the second set-point step [s].
+#: Window around the second set-point step [s].
 ZOOM = (chapter2.STEP - 0.02, chapter2.STEP + 0.16)
 
 
 def sheets() -> list[Sheet]:
-    """Return them."""
+    """Build Figs. 2.6 to 2.9."""
     return [tracking(), jumps("2.7", False), jumps("2.8", True), strains()]
 
 

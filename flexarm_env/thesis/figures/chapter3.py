@@ -9,13 +9,13 @@ from flexarm_env.thesis.runs import Floats, Run, clock
 from flexarm_env.thesis.sheet import BEHIND, MAIN, OTHER, POINTS, SIGNAL, Curve, Panel, Sheet, panels
 
 STAND_IN = "stand-in for the rig: six elements, gears"
-#: Window and distance [s] of the frequency over time; what a window holds besides a vibration makes it scatter.
+#: Window and spacing [s] of the frequency over time; motion besides the vibration makes the estimate scatter.
 WINDOW, EVERY = 0.3, 0.04
 SPAN = (0.4, 4.0)
 
 
 def sheets() -> list[Sheet]:
-    """Return them."""
+    """Build Figs. 3.1 and 3.5 to 3.10."""
     return [slew(), coulomb(), adjusted(), clamped(), combined(), damping(), payload()]
 
 
@@ -99,7 +99,7 @@ def payload() -> Sheet:
 
 
 def _frequencies(runs: list[tuple[Run, str, str]] | tuple[tuple[Run, str, str], ...], rig: float | None) -> Panel:
-    """Frequency of the strain over time."""
+    """Build the panel of the strain's frequency over time."""
     curves = []
     for made, label, role in runs:
         middle, found = over_time(made.time, made.strain, WINDOW, EVERY, (1.0, 13.0))

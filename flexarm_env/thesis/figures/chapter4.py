@@ -17,7 +17,7 @@ NOISY = "stand-in for the rig: six elements, gears, noise"
 
 
 def sheets() -> list[Sheet]:
-    """Return them."""
+    """Build Figs. 4.2 to 4.22."""
     return [
         *(clamped(number, delay) for number, delay in (("4.2", 0.0), ("4.3", CLAMPED_DELAY))),
         unstable(),
@@ -39,7 +39,7 @@ def clamped(number: str, delay: float) -> Sheet:
         (chapter3.clamped_control(once, -1.0, delay), "K_mo = −1, arm counted once (diverges)", OTHER),
         (chapter3.clamped_control(double, -1.0, delay), "K_mo = −1, model as printed", MAIN),
     )
-    # with the arm counted once the strain leaves the page: drawn as far as it is of the others' size
+    # with the arm counted once the strain exceeds the panel: drawn while comparable to the others
     size = 1.5 * float(np.max(np.abs(runs[2][0][:, 2])))
     gone = int(np.argmax(np.abs(runs[1][0][:, 2]) > size))
     ends = (None, gone, None)

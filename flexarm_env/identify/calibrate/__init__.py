@@ -1,0 +1,1 @@
+"""Calibration of an arm's constants and effects against recordings."""

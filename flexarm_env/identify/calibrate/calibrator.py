@@ -1,0 +1,172 @@
+"""How an arm is calibrated: from observer-corrected replays to free ones, so that no local minimum holds it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.calibrate.calibration import Calibration
+from flexarm_env.identify.calibrate.least_squares import Solution, minimise
+from flexarm_env.identify.calibrate.objective import objective_at
+from flexarm_env.identify.calibrate.parameters import FitParameters, free_parameters
+from flexarm_env.identify.calibrate.refine import refine
+from flexarm_env.identify.replay.dataset import Dataset
+from flexarm_env.identify.replay.error_measure import Score, score
+from flexarm_env.identify.replay.scales import torque_scale
+from flexarm_env.identify.settings import Settings
+from flexarm_env.identify.workers import Workers
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Calibrator:
+    """Calibrates arms against one dataset, with priors centred on one nominal arm.
+
+    Attributes:
+        nominal: the arm before any calibration.
+        dataset: the recordings.
+        workers: processes and threads of its fits.
+    """
+
+    nominal: Arm
+    dataset: Dataset
+    workers: Workers = field(default_factory=Workers)
+
+    @property
+    def settings(self) -> Settings:
+        """Numbers of the method."""
+        return self.dataset.settings
+
+    def score(self, arm: Arm, held_out: bool = True) -> Score:
+        """Measure the errors of an arm on the held-out or the fitted part."""
+        return score(arm, self.dataset, held_out)
+
+    def calibrate(self, arm: Arm, levels: Sequence[float] | None = None) -> Calibration:
+        """Calibrate everything free in an arm through levels of process noise, then at its own torque noise.
+
+        Args:
+            arm: where to start.
+            levels: over the rms torque of the drive; the usual ones if left out.
+        """
+        numbers = self.settings.calibrating
+        levels = self.settings.process_noise.calibration if levels is None else levels
+        return self._through(arm, self._noises(arm, levels, numbers.passes), numbers.iterations)
+
+    def briefly(self, arm: Arm) -> tuple[float, Calibration]:
+        """Calibrate an arm in a few steps; also give its error in windows on the fitted part."""
+        noises = self._noises(arm, self.settings.process_noise.brief, passes=0)
+        found = self._through(arm, noises, self.settings.calibrating.brief_iterations)
+        return self.score(found.arm, held_out=False).windows, found
+
+    def uncalibrated(self, arm: Arm) -> Calibration:
+        """Present an arm as a calibration in which nothing moved."""
+        parameters = free_parameters(arm, arm, self.dataset)
+        x = parameters.position(arm)
+        steps = parameters.step_sizes(x, self.settings.parameters)
+        solution = Solution(x, np.inf, np.zeros(0), np.zeros((0, len(x))), steps)
+        return Calibration(arm, solution, objective_at(arm, self.dataset, parameters, 0.0))
+
+    def constants(self) -> Calibration:
+        """Calibrate the nominal constants; stay near them where they were right already, so that nothing is gained."""
+        before = self.score(self.nominal, held_out=False)
+        found, after = self.from_arm(self.nominal)
+        return found if after.windows <= before.windows else self.calibrate(self.nominal, levels=())
+
+    def from_arm(self, arm: Arm) -> tuple[Calibration, Score]:
+        """Calibrate from an arm; also give the errors on the fitted part.
+
+        A model that ends off, but not so far that something must be missing, may have constants that compensate each other. With
+        more feedback at first they do not. The better of both calibrations is chosen.
+        """
+        found = self.calibrate(arm)
+        after = self.score(found.arm, held_out=False)
+        if not self.settings.errors.close < after.windows < self.settings.errors.far_off:
+            return found, after
+        other = self.calibrate(arm, self.settings.process_noise.calibration_more)
+        then = self.score(other.arm, held_out=False)
+        return (other, then) if then.windows < after.windows else (found, after)
+
+    def or_from_nominal(self, found: Calibration) -> Calibration:
+        """Choose the better of a calibration and another that starts from the nominal constants with its effects.
+
+        Constants that compensated for a missing effect may have moved to where there is no way back.
+        """
+        now = self.score(found.arm, held_out=False)
+        if now.windows < self.settings.errors.calibrated:
+            return found
+        other, then = self.from_arm(self.nominal_with_effects_of(found.arm))
+        return other if then.is_better_than(now) else found
+
+    def polish(self, found: Calibration) -> Calibration:
+        """Continue a calibration as far as it goes, from where it ended or from the nominal constants.
+
+        Where the model stays far off, the error is so rough that one more calibration may halve it. Where little is left, as with
+        backlash, one more may end at the noise.
+        """
+        errors, process_noise = self.settings.errors, self.settings.process_noise
+        found = self.or_from_nominal(found)
+        now = self.score(found.arm, held_out=False)
+        near = errors.near < now.windows < errors.close
+        again = (process_noise.calibration,) * self.settings.calibrating.continuations
+        for levels in (process_noise.calibration, process_noise.calibration_last) if near else again:
+            if not near and now.windows < errors.far_off:
+                break
+            other = self.calibrate(found.arm, levels)
+            then = self.score(other.arm, held_out=False)
+            if then.is_better_than(now):
+                found, now = other, then
+            elif not near:
+                break
+        return found
+
+    def on_everything(self, found: Calibration) -> Calibration:
+        """Continue a calibration on all of the data and refine it: what is kept once nothing is left to judge."""
+        numbers, parameters = self.settings.calibrating, found.parameters
+        objective = objective_at(found.arm, self.dataset.nothing_held_out(), parameters, found.objective.torque_noise)
+        objective = objective.weighted_by(found.arm, narrow_priors=False)
+        x, prior = parameters.position(found.arm), objective.weights.prior
+        steps, iterations, tolerance = found.solution.steps, numbers.last_iterations, numbers.final_tolerance
+        solution = minimise(objective.residual, x, prior, steps, self.settings.least_squares, iterations, tolerance)
+        refined = replace(solution, x=refine(objective, solution.x))
+        return Calibration(parameters.place(found.arm, refined.x), refined, objective, solution.x - x)
+
+    def nominal_with_effects_of(self, arm: Arm) -> Arm:
+        """Give the nominal arm the effects that another has beside its own."""
+        added = {name: arm.effects[name] for name in arm.effects if name not in self.nominal.effects}
+        return replace(self.nominal, effects={**self.nominal.effects, **added})
+
+    def reset_biased_constants(self, found: Calibration, most: float) -> Arm:
+        """Reset to nominal the constants that moved by more than some standard deviations of their priors.
+
+        Where none did, all of them: so little may compensate for an effect, too, and right values are near.
+        """
+        moved = [(p, abs(x) / p.prior) for p, x in found.parameters.pairs(found.solution.x) if p.is_constant]
+        far = [p.path for p, deviations in moved if deviations > most] or [p.path for p, _ in moved]
+        return found.arm.with_values({path: self.nominal.value(path) for path in far})
+
+    def _noises(self, arm: Arm, levels: Sequence[float], passes: int) -> list[float]:
+        """List the process noises [Nm] of a calibration: the levels above the arm's own torque noise, then passes at that."""
+        scale, own = torque_scale(arm, self.dataset.runs), arm.constants["drive"]["torque_noise"]
+        noises = [level * scale for level in levels if level * scale > own]
+        return noises + [own] * (passes if noises else max(passes, 1))
+
+    def _through(self, arm: Arm, noises: Sequence[float], iterations: int) -> Calibration:
+        settings = self.settings
+        tolerances = [settings.calibrating.tolerance] * (len(noises) - 1) + [settings.calibrating.final_tolerance]
+        parameters: FitParameters = free_parameters(arm, self.nominal, self.dataset)
+        x = parameters.position(arm)
+        steps = parameters.step_sizes(x, settings.parameters)
+        for number, (noise, tolerance) in enumerate(zip(noises, tolerances, strict=True), start=1):
+            objective = objective_at(arm, self.dataset, parameters, noise)
+            objective = objective.weighted_by(parameters.place(arm, x))
+            if number == len(noises) >= settings.calibrating.passes:
+                steps = steps.narrowed(settings.least_squares.narrow)
+            prior = objective.weights.prior
+            solution = minimise(objective.residual, x, prior, steps, settings.least_squares, iterations, tolerance)
+            x, steps = solution.x, solution.steps
+        return Calibration(parameters.place(arm, x), solution, objective)

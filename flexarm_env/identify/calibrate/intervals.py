@@ -1,0 +1,77 @@
+"""Intervals of calibrated values: scatter of the fit, shift on new data, and the exactness that no model exceeds."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.calibrate.calibration import Calibration
+from flexarm_env.identify.calibrate.common_scale import force_powers, scale_deviation
+from flexarm_env.identify.calibrate.estimate import Estimate
+from flexarm_env.identify.calibrate.least_squares import covariance, jacobian
+from flexarm_env.identify.calibrate.objective import Objective
+from flexarm_env.identify.calibrate.parameters import FitParameter
+from flexarm_env.identify.settings import LEAST_NORM
+
+Floats = NDArray[np.float64]
+
+
+def estimates(calibration: Calibration, nominal: Arm) -> list[Estimate]:
+    """Estimate every fitted value with its 90 % interval.
+
+    The standard deviation holds the scatter of the fit (sandwich), how far the value moved when the held-out part came in, and
+    the exactness that no model exceeds.
+
+    Args:
+        calibration: of the arm.
+        nominal: the arm before it.
+    """
+    parameters, x = calibration.parameters, calibration.solution.x
+    objective = _weighted_by_residual(calibration)
+    numbers = objective.dataset.settings.intervals
+    powers = force_powers(calibration.arm, parameters)
+    variance = _scatter(objective, calibration, powers) + (0.0 if calibration.moved is None else calibration.moved**2)
+    common = scale_deviation(objective, x, powers)
+    relative = np.hypot(numbers.best_model, common * np.abs(powers))
+    sizes = [abs(p.value(v)) / p.scale if p.scale else 1.0 for p, v in parameters.pairs(x)]
+    least = relative * np.array(sizes)
+    sigma = np.sqrt(variance + np.square(least))
+    triples = zip(parameters, x, sigma, strict=True)
+    return [_estimate(p, float(v), float(numbers.quantile * s), nominal) for p, v, s in triples]
+
+
+def _estimate(parameter: FitParameter, x: float, half_width: float, nominal: Arm) -> Estimate:
+    low, high = sorted((parameter.value(x - half_width), parameter.value(x + half_width)))
+    section, *rest = parameter.path.split(".")
+    known = section != "effects" or rest[0] in nominal.effects
+    before = nominal.value(parameter.path) if known else float(nominal.known[rest[0]].parameters[rest[1]].null or 0.0)
+    return Estimate(parameter.path, parameter.value(x), low, high, nominal.parameter(parameter.path).unit, before)
+
+
+def _weighted_by_residual(calibration: Calibration) -> Objective:
+    """Weigh errors by those that the calibration left, under its priors."""
+    objective = calibration.objective
+    weights = replace(objective.weights, sigma=objective.rms_errors_of(calibration.arm))
+    return replace(objective, weights=weights)
+
+
+def _scatter(objective: Objective, calibration: Calibration, powers: NDArray[np.int64]) -> Floats:
+    """Estimate the variance of each x (x,) from the residual, but for the common scale of forces.
+
+    By differences as wide as the fit's and by narrow ones, whichever gives more. Wide ones show motion where values that change
+    together leave none. Narrow ones show what sticking hides.
+    """
+    settings, x = objective.dataset.settings, calibration.solution.x
+    prior = objective.parameters.priors
+    block = max(int(settings.intervals.block / objective.dataset.interval), 1) * len(objective.dataset.signals)
+    residual, onto_scale = objective.residual(x), powers / prior**2
+    rest = np.eye(len(x)) - np.outer(powers, onto_scale) / max(float(onto_scale @ powers), LEAST_NORM)
+    variances = []
+    for steps in (calibration.solution.steps.now, np.full(len(x), settings.refining.difference)):
+        spread = covariance(jacobian(objective.residual, x, steps), residual, prior, block)
+        variances.append(np.diag(rest @ spread @ rest.T))
+    largest: Floats = np.maximum.reduce([*variances, np.zeros(len(x))])
+    return largest

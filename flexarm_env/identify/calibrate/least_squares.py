@@ -1,0 +1,189 @@
+"""Levenberg–Marquardt on whitened residuals with a Gaussian prior, for replays that stick and slip.
+
+A replay's error is rough in its constants: a hub that stops a moment later rests elsewhere. A derivative says nothing there; a
+difference over a step as wide as the model is off does (statistical linearisation, as in ensemble Gauss–Newton: Chada, Chen and
+Sanz-Alonso, Found. Data Sci. 3 (2021) 331), and steps shrink as the error falls. SciPy's least_squares takes derivatives over
+steps of a fixed relative size, and cannot take columns over from an earlier fit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from joblib import Parallel, delayed
+from numpy.typing import NDArray
+
+from flexarm_env.identify.settings import LEAST_NORM, LeastSquares
+
+Floats = NDArray[np.float64]
+Residual = Callable[[Floats], Floats]
+
+
+@dataclass(frozen=True)
+class StepSizes:
+    """Finite-difference steps of x.
+
+    Attributes:
+        least: narrowest (x,).
+        most: widest (x,).
+        now: in use (x,).
+    """
+
+    least: Floats
+    most: Floats
+    now: Floats
+
+    def narrowed(self, factor: float) -> StepSizes:
+        """Narrow the steps for good: near the end, curvature does more harm than roughness."""
+        narrow = np.maximum(self.now / factor, self.least)
+        return StepSizes(self.least, narrow, narrow)
+
+    def adapted(self, residual: Floats, j: Floats, grow: bool) -> StepSizes:
+        """Choose steps at which each x changes the residual by as much as is left of it; no wider ones unless they may grow."""
+        sizes = np.linalg.norm(residual) / np.maximum(np.linalg.norm(j, axis=0), LEAST_NORM)
+        sizes = np.clip(sizes, self.least, self.most)
+        return StepSizes(self.least, self.most, sizes if grow else np.minimum(sizes, self.now))
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Where a minimisation ended.
+
+    Attributes:
+        x: (x,).
+        cost: sum of squares of residual and prior.
+        residual: (rows,).
+        jacobian: (rows, x).
+        steps: difference steps in use.
+    """
+
+    x: Floats
+    cost: float
+    residual: Floats
+    jacobian: Floats
+    steps: StepSizes
+
+
+def jacobian(residual: Residual, x: Floats, steps: Floats, first: int = 0) -> Floats:
+    """Compute central differences (rows, steps) of the residual over steps to either side, of x from the first on.
+
+    Columns are computed in one thread unless a `Workers.threads` context is open.
+    """
+
+    def column(k: int, width: float) -> Floats:
+        above, below = x.copy(), x.copy()
+        above[k] += width
+        below[k] -= width
+        return (residual(above) - residual(below)) / (2.0 * width)
+
+    if not len(steps):
+        return np.zeros((len(residual(x)), 0))
+    columns = Parallel(prefer="threads")(delayed(column)(k, width) for k, width in enumerate(steps, start=first))
+    return np.nan_to_num(np.stack(columns, axis=1))
+
+
+def cost_of(residual: Floats, x: Floats, prior: Floats) -> float:
+    """Sum the squares of residual and prior; infinite where a replay failed."""
+    total = float(residual @ residual + np.sum((x / prior) ** 2))
+    return total if np.isfinite(total) else np.inf
+
+
+def minimise(
+    residual: Residual,
+    x: Floats,
+    prior: Floats,
+    steps: StepSizes,
+    numbers: LeastSquares,
+    iterations: int,
+    tolerance: float,
+    frozen: Floats | None = None,
+) -> Solution:
+    """Minimise |residual(x)|² + |x / prior|².
+
+    Args:
+        residual: whitened residual (rows,).
+        x: where to start.
+        prior: standard deviation of each x around 0.
+        steps: of the differences; of the last of x, where there are frozen columns.
+        numbers: dampings and step rules.
+        iterations: most Jacobians.
+        tolerance: relative decrease of the cost at which to stop, unless narrower differences may help.
+        frozen: Jacobian (rows, first columns) taken over from elsewhere and not computed again.
+    """
+    r = residual(x)
+    point = _Point(x, r, cost_of(r, x, prior), numbers.first_damping)
+    known = 0 if frozen is None else frozen.shape[1]
+    j = np.empty((len(r), len(x)))
+    if frozen is not None:
+        j[:, :known] = frozen
+    for _ in range(iterations):
+        if known < len(x):
+            j[:, known:] = jacobian(residual, point.x, steps.now, known)
+        before = point.cost
+        point = _descend(residual, point, j, prior, numbers)
+        stays = before - point.cost < tolerance * before
+        finer = steps.adapted(point.residual, j[:, known:], grow=not stays)
+        if stays and np.all(finer.now > numbers.shrinks * steps.now):
+            break
+        steps = finer
+    return Solution(point.x, point.cost, point.residual, j, steps)
+
+
+@dataclass(frozen=True)
+class _Point:
+    """Where a minimisation stands: x, residual (rows,), cost, and the damping of the next step."""
+
+    x: Floats
+    residual: Floats
+    cost: float
+    damping: float
+
+
+def _descend(residual: Residual, point: _Point, j: Floats, prior: Floats, numbers: LeastSquares) -> _Point:
+    """Take damped steps along one Jacobian, which each corrects in place for the next, while they lower the cost enough."""
+    x, r, cost, damping = point.x, point.residual, point.cost, point.damping
+    for number in range(numbers.steps):
+        normal = j.T @ j + np.diag(prior**-2.0)
+        slope = j.T @ r + x / prior**2
+        last = cost
+        for _ in range(1 if number else numbers.trials):
+            step = -np.linalg.solve(normal + damping * np.diag(np.diag(normal)), slope)
+            step = np.clip(step, -numbers.largest_step, numbers.largest_step)
+            trial = residual(x + step)
+            new = cost_of(trial, x + step, prior)
+            if new < cost:
+                j += _secant_correction(trial - r - j @ step, step, np.diag(normal))
+                x, r, cost = x + step, trial, new
+                damping = max(damping * numbers.less_damping, numbers.least_damping)
+                break
+            damping = max(numbers.more_damping * damping, numbers.least_helpful)
+        if last - cost < numbers.worthwhile * last:
+            break
+    return _Point(x, r, cost, damping)
+
+
+def _secant_correction(missed: Floats, step: Floats, weights: Floats) -> Floats:
+    """Compute the correction by which a Jacobian reproduces the change along a step, in weighted x.
+
+    Broyden, Math. Comput. 19 (1965) 577.
+    """
+    along = weights * step
+    return np.outer(missed, along / (along @ step))
+
+
+def covariance(j: Floats, residual: Floats, prior: Floats, block: int) -> Floats:
+    """Estimate the covariance (x, x) of a fit whose residual need not be white.
+
+    Sandwich of the normal equations around the scatter of the gradient summed over blocks of `block` rows (Newey and West,
+    Econometrica 55 (1987) 703, with blocks for lags).
+    """
+    bread = np.linalg.inv(j.T @ j + np.diag(prior**-2.0))
+    block = min(block, len(residual))
+    count = len(residual) // block
+    rows = residual[: count * block, None] * j[: count * block]
+    sums = rows.reshape(count, block, -1).sum(axis=1)
+    meat = sums.T @ sums + np.diag(prior**-2.0)
+    spread: Floats = bread @ meat @ bread
+    return spread

@@ -1,0 +1,137 @@
+"""Residuals of an arm against a dataset as a function of its fitted values, at one level of process noise."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.calibrate.parameters import FitParameters
+from flexarm_env.identify.replay.dataset import Dataset
+from flexarm_env.identify.replay.error_measure import error_measure
+from flexarm_env.identify.replay.observer import observer_gains
+from flexarm_env.identify.replay.replay import replay
+from flexarm_env.identify.replay.run import Run
+from flexarm_env.identify.settings import FAILED_ERROR
+from flexarm_env.plant.plant import Plant
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Weights:
+    """What errors and values count for.
+
+    Attributes:
+        sigma: (runs, signals) by which errors are divided, SI units.
+        prior: (x,) standard deviation of each value.
+    """
+
+    sigma: Floats
+    prior: Floats
+
+
+@dataclass(frozen=True)
+class ObserverBank:
+    """Observer gains, designed once for each structure of an arm and kept while its numbers are fitted.
+
+    Attributes:
+        designed: physical gains by payload, effects and size of the state.
+    """
+
+    designed: dict[tuple[float, tuple[str, ...], int, int], Floats] = field(default_factory=dict)
+
+    def gains(self, arm: Arm, plant: Plant, run: Run, dataset: Dataset, torque_noise: float) -> Floats:
+        """Look up the gains for an arm's structure; design them for this arm where there are none yet."""
+        key = (run.payload, tuple(arm.effects), plant.modes, plant.states)
+        if key not in self.designed:
+            self.designed[key] = observer_gains(arm, plant, dataset, torque_noise)
+        return self.designed[key]
+
+
+@dataclass(frozen=True)
+class Objective:
+    """The cost of a calibration: whitened replay errors and priors.
+
+    Attributes:
+        arm: whose values the parameters replace.
+        dataset: the recordings.
+        parameters: what is fitted.
+        torque_noise: process noise [Nm]; 0 for free replays.
+        weights: of errors and values.
+        observers: gains of the corrected replays.
+    """
+
+    arm: Arm
+    dataset: Dataset
+    parameters: FitParameters
+    torque_noise: float
+    weights: Weights
+    observers: ObserverBank = field(default_factory=ObserverBank, repr=False, compare=False)
+
+    def residual(self, x: Floats) -> Floats:
+        """Compute the errors over sigma (rows,), run by run, sample by sample, signal by signal."""
+        return self.residual_of(self.parameters.place(self.arm, x))
+
+    def residual_of(self, arm: Arm) -> Floats:
+        """Compute the residual of another arm under the same weights."""
+        pairs = zip(self.errors_of(arm), self.weights.sigma, strict=True)
+        return self._bounded([(error / sigma).ravel() for error, sigma in pairs])
+
+    def held_out_residual_of(self, arm: Arm) -> Floats:
+        """Compute the residual of another arm on the part held out, from observers of its own."""
+        own = replace(self, observers=ObserverBank())
+        runs = self.dataset.runs
+        triples = zip(runs, own._errors(arm, runs), self.weights.sigma, strict=True)
+        return self._bounded([(error[~run.train] / sigma).ravel() for run, error, sigma in triples])
+
+    def errors_of(self, arm: Arm) -> list[Floats]:
+        """Compute measured less replayed (samples, signals) of the fitted part of each run, SI units."""
+        return self._errors(arm, self.dataset.fitted)
+
+    def weighted_by(self, arm: Arm, narrow_priors: bool = True) -> Objective:
+        """Weigh errors by those of an arm, and constants the more the less is explained.
+
+        Errors that a model cannot explain are correlated: those of one moment count once, however many samples there are.
+        Without that a search strays to constants that no machine has.
+
+        Args:
+            arm: whose errors are the measure.
+            narrow_priors: whether the priors of constants are narrowed so.
+        """
+        dataset = self.dataset
+        sigma = self.rms_errors_of(arm)
+        unexplained = (1.0 - 1.0 / np.mean((sigma / dataset.noise) ** 2)) if narrow_priors else 0.0
+        together = 1.0 + unexplained * max(dataset.settings.calibrating.memory / dataset.interval - 1.0, 0.0)
+        narrower = np.array([np.sqrt(together) if p.is_constant else 1.0 for p in self.parameters])
+        return replace(self, weights=Weights(sigma, self.parameters.priors / narrower))
+
+    def rms_errors_of(self, arm: Arm) -> Floats:
+        """Compute the rms error (runs, signals) of the fitted part, at least the noise."""
+        found = np.array([np.sqrt(np.mean(e**2, axis=0)) for e in self.errors_of(arm)])
+        return np.maximum(np.nan_to_num(found, nan=np.inf, posinf=FAILED_ERROR), self.dataset.noise)
+
+    def _bounded(self, parts: Sequence[Floats]) -> Floats:
+        largest = self.dataset.settings.least_squares.largest_residual
+        return np.clip(np.nan_to_num(np.concatenate(parts), nan=largest), -largest, largest)
+
+    def _errors(self, arm: Arm, runs: Sequence[Run]) -> list[Floats]:
+        dataset, plants = self.dataset, self.dataset.plants(arm)
+        judges_free_run = error_measure(arm).judges_free_run
+        errors = []
+        for run in runs:
+            plant = plants[run.payload]
+            gains = self.observers.gains(arm, plant, run, dataset, self.torque_noise) if self.torque_noise > 0.0 else None
+            errors.append(run.measured - replay(plant, run, dataset, gains))
+            if not judges_free_run:
+                errors[-1][: round(dataset.settings.preparation.settling / dataset.interval)] = 0.0
+        return errors
+
+
+def objective_at(arm: Arm, dataset: Dataset, parameters: FitParameters, torque_noise: float) -> Objective:
+    """Build an objective at one level of process noise [Nm], with errors of unit weight."""
+    sigma = np.ones((len(dataset.runs), len(dataset.signals)))
+    return Objective(arm, dataset, parameters, torque_noise, Weights(sigma, parameters.priors))

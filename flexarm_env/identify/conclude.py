@@ -1,0 +1,115 @@
+"""The diagnosis that a search ends in: final calibration, intervals, ranking, detection limits and the next run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from flexarm_env.arm import Arm, short_name
+from flexarm_env.experiments.next_run import propose
+from flexarm_env.identify.calibrate.calibrator import Calibrator
+from flexarm_env.identify.calibrate.estimate import Estimate
+from flexarm_env.identify.calibrate.intervals import estimates
+from flexarm_env.identify.explain.detection_limits import detection_limits
+from flexarm_env.identify.origin import with_origin
+from flexarm_env.identify.replay.error_measure import Score
+from flexarm_env.identify.results import Candidate, Diagnosis
+from flexarm_env.identify.select.trace import Trace
+from flexarm_env.recordings.recording import Recording
+
+
+def conclude(
+    verdict: str,
+    trace: Trace,
+    nominal_score: Score,
+    arm: Arm,
+    recordings: Sequence[Recording],
+    calibrator: Calibrator,
+    seed: int,
+) -> Diagnosis:
+    """Calibrate the arm that the verdict names on all of the data, and collect what is known of it.
+
+    Args:
+        verdict: of the criteria.
+        trace: of the search.
+        nominal_score: errors of the arm as given.
+        arm: as given, with all its sensors.
+        recordings: of the machine.
+        calibrator: of the recordings.
+        seed: recorded with the result.
+    """
+    nominal, base = calibrator.nominal, trace.steps[0].model
+    model = trace.model if verdict == "effects" else base
+    accepted = trace.accepted if verdict == "effects" else ()
+    with calibrator.workers.threads():
+        final = calibrator.on_everything(model.calibration)
+        values = estimates(final, nominal)
+        ranking = _ranking(trace, [a.effect for a in accepted], values, nominal)
+    scores = {"nominal": nominal_score, "refitted": base.score, **{a.effect: a.score for a in accepted}, "final": model.score}
+    free = ("nominal", "refitted", "final")
+    corrected = with_origin(arm, final.arm, values, recordings, "diagnose", seed) if verdict != "nothing_missing" else arm
+    return Diagnosis(
+        verdict=verdict,
+        effects=[a.effect for a in accepted],
+        equivalent=[list(a.equivalent) for a in accepted],
+        ranking=ranking,
+        error={name: score.windows for name, score in scores.items()},
+        free_run={name: scores[name].free_run for name in free},
+        constants={short_name(e.path): e for e in values},
+        arm=corrected,
+        nominal=arm,
+        refitted=base.arm,
+        notes=_rest(verdict, model.score, calibrator),
+        trace=trace.as_json(),
+        settings=calibrator.settings,
+        seed=seed,
+    )
+
+
+def with_outlook(found: Diagnosis, trace: Trace, calibrator: Calibrator) -> Diagnosis:
+    """Add detection limits, and the run to record next where the recordings leave something open."""
+    smallest = {} if found.verdict == "unknown" else detection_limits(calibrator, trace.model.calibration)
+    hypotheses = trace.open_hypotheses
+    is_open = len(hypotheses) > 1 and found.verdict == "effects"
+    next_run = propose(hypotheses, calibrator.dataset.interval) if is_open else None
+    return replace(found, smallest=smallest, next_run=next_run)
+
+
+def insufficient(arm: Arm, calibrator: Calibrator) -> Diagnosis:
+    """Build the diagnosis of recordings that are too poor to judge an arm, with the run to record next."""
+    nominal = calibrator.nominal
+    score = calibrator.score(nominal)
+    names = ("nominal", "refitted", "final")
+    return Diagnosis(
+        verdict="insufficient_data",
+        effects=[],
+        equivalent=[],
+        ranking=[],
+        error=dict.fromkeys(names, score.windows),
+        free_run=dict.fromkeys(names, score.free_run),
+        constants={},
+        arm=arm,
+        nominal=arm,
+        refitted=nominal,
+        notes=[],
+        next_run=propose({"": nominal}, calibrator.dataset.interval),
+        settings=calibrator.settings,
+    )
+
+
+def _ranking(trace: Trace, accepted: Sequence[str], values: Sequence[Estimate], nominal: Arm) -> list[Candidate]:
+    """List every effect that was tried: accepted ones in their order, then the others, those that remove most first."""
+    ranking = []
+    for tried in sorted(trace.ranking.values(), key=lambda one: -one.gain):
+        own = values if tried.effect in accepted else estimates(tried.calibration, nominal) if tried.calibration else []
+        own = [e for e in own if e.path.startswith(f"effects.{tried.effect}.")]
+        ranking.append(Candidate(tried.effect, tried.gain, tried.effect in accepted, own))
+    return sorted(ranking, key=lambda c: accepted.index(c.effect) if c.accepted else len(accepted))
+
+
+def _rest(verdict: str, score: Score, calibrator: Calibrator) -> list[str]:
+    """Describe an error that the named effects leave."""
+    if verdict != "effects" or score.windows <= calibrator.settings.errors.explained:
+        return []
+    left = f"the corrected model still errs by {score.windows:.3g} times the noise"
+    return [f"{left}: more is missing, or the noise is larger than the arm file says"]

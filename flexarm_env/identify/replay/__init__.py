@@ -1,0 +1,1 @@
+"""Replays of recordings through an arm, and their errors over the noise."""

@@ -1,0 +1,163 @@
+"""How the error of an arm is measured: in windows and in a free run, or by innovations where torque noise is stated."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.replay.dataset import Dataset
+from flexarm_env.identify.replay.observer import innovation_sigma, observer_gains
+from flexarm_env.identify.replay.replay import replay, window_observers, window_replay
+from flexarm_env.identify.replay.run import Run
+from flexarm_env.identify.settings import FAILED_ERROR, LEAST_EXCESS
+from flexarm_env.plant.plant import Plant
+
+Floats = NDArray[np.float64]
+
+
+def excess(error: float) -> float:
+    """Compute the excess of an error over the noise, as a variance."""
+    return max(error**2 - 1.0, LEAST_EXCESS)
+
+
+@dataclass(frozen=True)
+class Score:
+    """Errors of an arm on one part of the data, rms over noise: 1 is perfect.
+
+    Attributes:
+        windows: in windows of 1 s from estimated states; where torque noise is stated, the rms of the innovations over their
+            standard deviation under both noises, since such a disturbance drives any free replay away within a window.
+        free_run: each recording replayed once from its start.
+    """
+
+    windows: float
+    free_run: float
+
+    @property
+    def excess(self) -> float:
+        """Excess of the error in windows, as a variance."""
+        return excess(self.windows)
+
+    @property
+    def free_run_excess(self) -> float:
+        """Excess of the error of the free run, as a variance."""
+        return excess(self.free_run)
+
+    @property
+    def mean_excess(self) -> float:
+        """Geometric mean of both."""
+        return math.sqrt(self.excess * self.free_run_excess)
+
+    def is_better_than(self, other: Score) -> bool:
+        """Whether the product of both errors is smaller."""
+        return self.windows * self.free_run < other.windows * other.free_run
+
+
+class ErrorMeasure(Protocol):
+    """How errors are measured."""
+
+    @property
+    def judges_free_run(self) -> bool:
+        """Whether the free run says anything about the model."""
+
+    def score(self, arm: Arm, dataset: Dataset, held_out: bool) -> Score:
+        """Measure the errors of an arm on the held-out or the fitted part."""
+
+    def brief(self, arm: Arm, dataset: Dataset) -> float:
+        """Measure the held-out error in windows, cheaply, for arms that are nearly the same."""
+
+
+@dataclass(frozen=True)
+class WindowErrors:
+    """Errors in windows of 1 s from estimated states, and of one free run."""
+
+    judges_free_run: bool = True
+
+    def score(self, arm: Arm, dataset: Dataset, held_out: bool) -> Score:
+        """Measure the errors of an arm on the held-out or the fitted part."""
+        plants = dataset.plants(arm)
+        observers = {payload: window_observers(arm, plant, dataset) for payload, plant in plants.items()}
+        totals = np.zeros(2)
+        count = 0
+        for run in dataset.part(held_out):
+            rows = ~run.train if held_out else run.train
+            plant, first = plants[run.payload], int(np.argmax(rows))
+            windows = window_replay(plant, run, dataset, observers[run.payload], first)
+            totals += [_squares(run, replayed, rows, dataset) for replayed in (windows, replay(plant, run, dataset))]
+            count += int(rows.sum()) * len(dataset.signals)
+        windows, free = np.sqrt(totals / count)
+        return Score(float(windows), float(free))
+
+    def brief(self, arm: Arm, dataset: Dataset) -> float:
+        """Measure the held-out error in windows, from states that two corrected replays estimate."""
+        plants = dataset.plants(arm)
+        levels = dataset.settings.process_noise.windows_brief
+        observers = {payload: window_observers(arm, plant, dataset, levels)[1:] for payload, plant in plants.items()}
+        total, count = 0.0, 0
+        for run in dataset.runs:
+            rows = ~run.train
+            windows = window_replay(plants[run.payload], run, dataset, observers[run.payload], int(np.argmax(rows)))
+            total += _squares(run, windows, rows, dataset)
+            count += int(rows.sum()) * len(dataset.signals)
+        return float(np.sqrt(total / count))
+
+
+@dataclass(frozen=True)
+class InnovationErrors:
+    """Innovations of the observer that the stated torque noise gives."""
+
+    judges_free_run: bool = False
+
+    def score(self, arm: Arm, dataset: Dataset, held_out: bool) -> Score:
+        """Measure the errors of an arm on the held-out or the fitted part."""
+        plants = dataset.plants(arm)
+        own = arm.constants["drive"]["torque_noise"]
+        gains = {payload: observer_gains(arm, plant, dataset, own) for payload, plant in plants.items()}
+        sigmas = {payload: innovation_sigma(plant, dataset, own) for payload, plant in plants.items()}
+        totals = np.zeros(2)
+        count = 0
+        for run in dataset.runs:
+            rows = ~run.train if held_out else run.train
+            plant = plants[run.payload]
+            corrected = (run.measured - replay(plant, run, dataset, gains[run.payload])) / sigmas[run.payload]
+            free = (run.measured - replay(plant, run, dataset)) / dataset.noise
+            totals += [np.sum(np.nan_to_num(part[rows], nan=FAILED_ERROR) ** 2) for part in (corrected, free)]
+            count += int(rows.sum()) * len(dataset.signals)
+        innovations, free_run = np.sqrt(totals / count)
+        return Score(float(innovations), float(free_run))
+
+    def brief(self, arm: Arm, dataset: Dataset) -> float:
+        """Measure the held-out innovations."""
+        return self.score(arm, dataset, held_out=True).windows
+
+
+def error_measure(arm: Arm) -> ErrorMeasure:
+    """Choose how the errors of an arm are measured: by innovations where its file states a torque noise."""
+    return InnovationErrors() if arm.constants["drive"]["torque_noise"] > 0.0 else WindowErrors()
+
+
+def score(arm: Arm, dataset: Dataset, held_out: bool = True) -> Score:
+    """Measure the errors of an arm on what was held out, or on what was fitted."""
+    return error_measure(arm).score(arm, dataset, held_out)
+
+
+def window_errors(arm: Arm, plants: Mapping[float, Plant], dataset: Dataset) -> list[Floats]:
+    """Compute the errors over noise (samples, signals) of each whole run in windows."""
+    observers = {payload: window_observers(arm, plant, dataset) for payload, plant in plants.items()}
+    errors = []
+    for run in dataset.runs:
+        replayed = window_replay(plants[run.payload], run, dataset, observers[run.payload])
+        scaled = (run.measured - replayed) / dataset.noise
+        errors.append(np.nan_to_num(scaled, nan=FAILED_ERROR))
+    return errors
+
+
+def _squares(run: Run, replayed: Floats, rows: NDArray[np.bool_], dataset: Dataset) -> float:
+    scaled = (run.measured[rows] - replayed[rows]) / dataset.noise
+    return float(np.sum(np.nan_to_num(scaled, nan=FAILED_ERROR) ** 2))

@@ -1,0 +1,113 @@
+"""Steady-state Kalman gains of the observer-corrected replay (innovations form), one for each mode of the plant."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.replay.dataset import Dataset
+from flexarm_env.plant.plant import Plant
+
+Floats = NDArray[np.float64]
+
+
+def observer_gains(arm: Arm, plant: Plant, dataset: Dataset, torque_noise: float) -> Floats:
+    """Compute physical gains (modes, states, signals) for an assumed torque noise [Nm].
+
+    A held hub drifts slowly, so that its angle stays open to correction. The drift follows the arm's size in coarse steps, and
+    not how hard it is driven.
+    """
+    numbers = dataset.settings.observers
+    size = arm.constants["drive"]["torque_noise"] or numbers.size_steps ** round(
+        math.log(dataset.scales["N*m"], numbers.size_steps)
+    )
+    held_drift = numbers.held_drift * min(torque_noise / size, 1.0)
+    return physical_gains(plant, dataset, torque_noise, held_drift)
+
+
+def physical_gains(plant: Plant, dataset: Dataset, torque_noise: float, held_drift: float) -> Floats:
+    """Compute gains (modes, states, signals) from errors of the readings to the state [q, q̇, extra].
+
+    Args:
+        plant: a compiled arm.
+        dataset: for the noise of the readings and the sampling time.
+        torque_noise: standard deviation of a torque on the hub, new in each sample [Nm].
+        held_drift: of a held angle in one sample, over the noise of its sensor.
+    """
+    gains = np.zeros((plant.modes, plant.states, len(dataset.noise)))
+    for mode in range(plant.modes):
+        gains[mode] = _gain(plant, mode, dataset, torque_noise, held_drift)
+    return gains
+
+
+def innovation_sigma(plant: Plant, dataset: Dataset, torque_noise: float) -> Floats:
+    """Compute the standard deviation (signals,) of a moving arm's innovations under the stated noises."""
+    transition, process = _process(plant, 0, dataset, torque_noise)
+    output, noise = plant.model.output, dataset.noise
+    covariance = _riccati(transition, output, process, noise, dataset.settings.observers.doublings)
+    return np.asarray(np.sqrt(np.diag(output @ covariance @ output.T) + noise**2), dtype=np.float64)
+
+
+def modal_gains(plant: Plant, physical: Floats) -> Floats:
+    """Convert physical gains to those of the kernel (modes, 2 blocks + bodies, signals)."""
+    size = 2 * plant.blocks
+    gains = np.zeros((plant.modes, size + plant.bodies, physical.shape[2]))
+    for mode in range(plant.modes):
+        gains[mode, :size] = plant.to_modal(mode) @ physical[mode]
+        for body in range(plant.bodies):
+            if (mode >> body) & 1:
+                gains[mode, size + body] = physical[mode, body]
+    return gains
+
+
+def _process(plant: Plant, mode: int, dataset: Dataset, torque_noise: float, held_drift: float = 0.0) -> tuple[Floats, Floats]:
+    """Compute transition and process covariance of one sample, both (states, states)."""
+    numbers, interval = dataset.settings.observers, dataset.interval
+    transition, push = plant.transition(mode, interval)
+    model = plant.model
+    size = len(model.names)
+    held = [body for body in range(plant.bodies) if (mode >> body) & 1]
+    impulse = torque_noise * interval
+    process = np.zeros((plant.states, plant.states))
+    mobility = np.linalg.inv(model.mass)
+    mobility[held] = 0.0
+    mobility[:, held] = 0.0
+    hub = np.linalg.inv(model.mass)[0, 0]
+    process[size : 2 * size, size : 2 * size] = numbers.hub_share * impulse**2 * hub * mobility
+    process += torque_noise**2 * np.outer(push, push)
+    for body in held:
+        transition[body, body] = 1.0
+        process[body, body] += (held_drift * dataset.noise[0]) ** 2
+    process[2 * size :, 2 * size :] += np.eye(plant.states - 2 * size) * numbers.least_process
+    return transition, process
+
+
+def _gain(plant: Plant, mode: int, dataset: Dataset, torque_noise: float, held_drift: float) -> Floats:
+    numbers, noise = dataset.settings.observers, dataset.noise
+    transition, process = _process(plant, mode, dataset, torque_noise, held_drift)
+    output = plant.model.output
+    covariance = _riccati(transition, output, process, noise, numbers.doublings)
+    seen = output @ covariance @ output.T + np.diag(noise**2)
+    gain = np.asarray(np.linalg.solve(seen, output @ covariance).T, dtype=np.float64)
+    if not np.isfinite(gain).all():
+        return np.zeros_like(gain)
+    closed = transition - transition @ gain @ output
+    return gain if np.abs(np.linalg.eigvals(closed)).max() < numbers.unstable else np.zeros_like(gain)
+
+
+def _riccati(transition: Floats, output: Floats, process: Floats, noise: Floats, doublings: int) -> Floats:
+    """Solve the filter's Riccati equation by doubling (Chu, Fan, Lin, Wang, Int. J. Control 77 (2004) 767)."""
+    a, h = transition.T.copy(), process.copy()
+    g = output.T @ (output / noise[:, None] ** 2)
+    eye = np.eye(len(a))
+    for _ in range(doublings):
+        w = np.linalg.solve(eye + g @ h, np.hstack([a, g]))
+        wa, wg = w[:, : len(a)], w[:, len(a) :]
+        h_next = h + a.T @ h @ wa
+        g = g + a @ wg @ a.T
+        a = a @ wa
+        h = 0.5 * (h_next + h_next.T)
+    return h

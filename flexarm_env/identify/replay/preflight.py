@@ -1,0 +1,39 @@
+"""Checks of recordings before they are compared with a model."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexarm_env.identify.replay.dataset import Dataset
+
+
+def preflight(dataset: Dataset) -> tuple[list[str], bool]:
+    """Check recordings before a model is calibrated.
+
+    Returns:
+        Notes for a person, a line each; and whether the recordings are too poor to judge an arm.
+    """
+    numbers = dataset.settings.preparation
+    notes = []
+    for run in dataset.runs:
+        if run.payload:
+            notes.append(f"{run.name}: the arm carries the {run.payload:g} kg that the recording states as its payload")
+        if len(run.intervals):
+            notes.append(f"{run.name}: sampled unevenly, {run.intervals.min():.4g} to {run.intervals.max():.4g} s")
+        at_limit = np.abs(run.command) >= numbers.at_limit * np.abs(run.command).max()
+        varies = np.ptp(run.command) > 0.0 and len(np.unique(run.command)) > numbers.fewest_levels
+        if at_limit.mean() > numbers.much_at_limit and varies:
+            notes.append(f"{run.name}: the command stands at its limit {100 * at_limit.mean():.0f} % of the time")
+    length = sum(run.time[-1] for run in dataset.runs)
+    turns = np.array([signal == "motor_speed" for signal in dataset.signals])  # steadily, too
+    motion = max(
+        float((np.where(turns, np.abs(run.measured).max(axis=0), np.ptp(run.measured, axis=0)) / dataset.noise).max())
+        for run in dataset.runs
+    )
+    if length < numbers.shortest:
+        notes.append(f"only {length:.2g} s of data: record at least 5 s with several starts and stops")
+    if motion < numbers.least_motion:
+        notes.append(
+            "nothing moves beyond the noise: record a run that breaks away both ways, as `flexarm simulate --input square`"
+        )
+    return notes, length < numbers.shortest or motion < numbers.least_motion

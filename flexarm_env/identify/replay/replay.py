@@ -1,0 +1,93 @@
+"""Replays of an arm against a dataset: free, observer-corrected (innovations form), and in windows from estimated states."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.replay.dataset import Dataset
+from flexarm_env.identify.replay.observer import modal_gains, observer_gains
+from flexarm_env.identify.replay.run import Run
+from flexarm_env.identify.replay.scales import torque_scale
+from flexarm_env.plant.plant import NO_GAINS, NOT_MEASURED, Plant
+
+Floats = NDArray[np.float64]
+
+
+def replay(plant: Plant, run: Run, dataset: Dataset, gains: Floats | None = None) -> Floats:
+    """Replay a run from its initial state.
+
+    Args:
+        plant: a compiled arm.
+        run: the recording.
+        dataset: to which the run belongs.
+        gains: physical observer gains (modes, states, signals) for a corrected replay; None for a free one.
+
+    Returns:
+        The readings (samples, signals), SI units.
+    """
+    dataset.place(plant, run)
+    if gains is None:
+        return plant.replay(run.command, run.intervals, NO_GAINS, NOT_MEASURED)
+    return plant.replay(run.command, run.intervals, modal_gains(plant, gains), run.measured)
+
+
+def window_replay(plant: Plant, run: Run, dataset: Dataset, observers: Sequence[Floats], first: int = 0) -> Floats:
+    """Replay a run freely in windows from estimated states.
+
+    The states come from replays under several observers. Each window starts from the state that meets the window best: a
+    stand-in for a smoother, which hysteresis (a hub at rest within its backlash) would mislead.
+
+    Args:
+        plant: a compiled arm.
+        run: the recording.
+        dataset: to which the run belongs.
+        observers: the kernel's gains of each replay.
+        first: first sample of interest; windows before it are left empty.
+
+    Returns:
+        The readings (samples, signals), SI units.
+    """
+    numbers = dataset.settings.preparation
+    length = max(round(numbers.window / dataset.interval), numbers.least_window_samples)
+    starts = range(0, len(run.command), length)
+    best = np.full(len(starts), np.inf)
+    out = np.empty_like(run.measured)
+    command = plant.delayed(run.command)
+    for gains in observers:
+        dataset.place(plant, run)
+        for w, start in enumerate(starts):
+            part = slice(start, start + length + 1)
+            intervals = run.intervals[part] if len(run.intervals) else run.intervals
+            state = plant.state.copy()
+            if start + length > first or not len(gains):
+                free = plant.play(command[part], intervals, NO_GAINS, NOT_MEASURED)[:length]
+                inside = slice(start, start + len(free))
+                error = float(np.sum(((run.measured[inside] - free) / dataset.noise) ** 2))
+                if error < best[w] or not np.isfinite(best[w]):
+                    out[inside], best[w] = free, error if np.isfinite(error) else np.inf
+            if len(gains):
+                plant.state[:] = state
+                plant.play(command[part], intervals, gains, run.measured[part])
+    return out
+
+
+def window_observers(arm: Arm, plant: Plant, dataset: Dataset, levels: Sequence[float] = ()) -> list[Floats]:
+    """Compute the kernel's gains of the replays whose states windows start from.
+
+    Args:
+        arm: the model.
+        plant: the same, compiled.
+        dataset: the recordings.
+        levels: of process noise, over the rms torque of the drive; those of `process_noise.windows` if left out.
+
+    Returns:
+        No gains first, then those of each level.
+    """
+    levels = levels or dataset.settings.process_noise.windows
+    scale, own = torque_scale(arm, dataset.runs), arm.constants["drive"]["torque_noise"]
+    noises = sorted({max(level * scale, own) for level in levels})
+    return [NO_GAINS, *(modal_gains(plant, observer_gains(arm, plant, dataset, noise)) for noise in noises)]

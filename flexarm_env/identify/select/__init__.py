@@ -1,0 +1,1 @@
+"""Selection of the effects that a model lacks."""

@@ -1,0 +1,205 @@
+"""By which criteria a search accepts, exchanges and drops effects, and reaches its verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from flexarm_env.identify.replay.dataset import Dataset
+from flexarm_env.identify.replay.error_measure import Score, excess
+from flexarm_env.identify.select.model import Model
+from flexarm_env.identify.settings import Settings
+
+#: The excess error of a score by which models are compared.
+Measure = Callable[[Score], float]
+
+
+class Criteria(Protocol):
+    """Decisions of a search: pure functions of scores and models."""
+
+    def measure(self, scores: Sequence[Score]) -> Measure:
+        """Choose the excess error by which models with these scores are compared."""
+
+    def is_sufficient(self, found: Score) -> bool:
+        """Whether an error leaves nothing to explain, so that the search ends."""
+
+    def is_worthwhile(self, without: Score, found: Score, measure: Measure) -> bool:
+        """Whether one more effect removes enough of the excess error."""
+
+    def explains(self, found: Score) -> bool:
+        """Whether a model explains the data, so that its effects are named."""
+
+    def is_fully_explained(self, found: Score) -> bool:
+        """Whether a model explains the data down to the noise."""
+
+    def is_inadequate(self, best: float, without: Score) -> bool:
+        """Whether the best error in windows of several models shows that none of them is the missing effect."""
+
+    def stays_inadequate(self, found: Score, without: Score) -> bool:
+        """Whether one more effect leaves a model inadequate that was so without it."""
+
+    def trusts_constants(self) -> bool:
+        """Whether calibrating the constants alone removed enough to start from them."""
+
+    def rejects_constants(self) -> bool:
+        """Whether calibrating the constants alone removed so little that nothing starts from them."""
+
+    def rank(self, best: Score, measure: Measure, dataset: Dataset) -> Callable[[Model], float]:
+        """Choose the key by which rivals of a model with this score are ordered, best first."""
+
+    def can_compare_rivals(self, found: Score) -> bool:
+        """Whether a model comes near enough for rivals of its effects to be compared."""
+
+    def leaves_room(self, found: Model) -> bool:
+        """Whether a model leaves an error that a rival of one of its effects could remove."""
+
+    def replaces(self, rival: Model, now: Model, rank: Callable[[Model], float]) -> bool:
+        """Whether a rival fits so much better that it takes an effect's place."""
+
+    def contender_difference(self, removed: float) -> float:
+        """Compute the difference of the excess up to which models are calibrated again as rivals of the best one."""
+
+    def equivalent_difference(self, removed: float, left: float) -> float:
+        """Compute the largest difference of the excess that equivalent effects leave."""
+
+    def equivalence_level(self, best: Score, measure: Measure) -> float:
+        """Compute the largest excess that an effect leaves that is equivalent to the best one."""
+
+    def verdict(self, accepted: Sequence[str], found: Score) -> str:
+        """Reach the verdict of a search from the effects that it accepted and the error that they leave."""
+
+
+#: Builds criteria from the score of the arm as given, that with its constants calibrated, whether the free run says anything of
+#: the model, and the settings.
+CriteriaFactory = Callable[[Score, Score, bool, Settings], Criteria]
+
+
+@dataclass(frozen=True)
+class ThresholdCriteria:
+    """Fixed shares of the excess error, tuned on machines with known hidden effects.
+
+    Attributes:
+        nominal: score of the arm as given.
+        refitted: score with its constants calibrated.
+        judges_free_run: false where torque noise is stated, so that no free run says anything.
+        settings: the thresholds.
+    """
+
+    nominal: Score
+    refitted: Score
+    judges_free_run: bool
+    settings: Settings
+
+    def measure(self, scores: Sequence[Score]) -> Measure:
+        """Choose the excess error in windows where a model comes near the noise.
+
+        Otherwise the free run counts as much, since it shows what holds for long; and alone, where even windows are far off.
+        """
+        best = min(s.windows for s in scores)
+        if self.judges_free_run and best > self.settings.errors.far_off:
+            return lambda s: s.free_run_excess
+        if self.judges_free_run and best > self.settings.errors.close:
+            return lambda s: s.mean_excess
+        return lambda s: s.excess
+
+    def is_sufficient(self, found: Score) -> bool:
+        """Whether the error is near the noise, or the excess below the least that an effect must remove."""
+        return found.windows < self.settings.errors.nothing_left or found.excess < self._least(lambda s: s.excess)
+
+    def is_worthwhile(self, without: Score, found: Score, measure: Measure) -> bool:
+        """Whether one more effect removes a share of the excess, and more than fits leave that end early."""
+        removed = measure(without) - measure(found)
+        return removed >= max(self.settings.selecting.least_gain * measure(without), self._least(measure))
+
+    def explains(self, found: Score) -> bool:
+        """Whether a model leaves nothing to explain, or explains windows and free runs alike, as true effects do.
+
+        What imitates another effect often does so in only one of the two, or stops short of the noise.
+        """
+        errors, shares = self.settings.errors, self.settings.selecting
+        share = shares.least_total_gain if found.windows > errors.far_off else shares.least_total_gain_near
+        pairs = [(self.refitted.windows, found.windows, errors.explained, share)]
+        if self.judges_free_run:
+            pairs.append((self.refitted.free_run, found.free_run, errors.free_run_explained, shares.least_total_gain))
+        return all(new <= enough or excess(new) <= (1.0 - least) * excess(old) for old, new, enough, least in pairs)
+
+    def is_fully_explained(self, found: Score) -> bool:
+        """Whether a model explains the data and leaves hardly more than noise: an imitation does not."""
+        errors, shares = self.settings.errors, self.settings.selecting
+        near = found.windows < errors.explained
+        near = near and found.excess < (1.0 - shares.least_total_gain_near) * self.refitted.excess
+        return (near or found.windows < errors.nothing_left) and self.explains(found)
+
+    def is_inadequate(self, best: float, without: Score) -> bool:
+        """Whether the best error in windows is far off, or leaves most of the excess without it."""
+        share = 1.0 - self.settings.selecting.least_total_gain
+        return best > self.settings.errors.far_off or excess(best) > share * without.excess
+
+    def stays_inadequate(self, found: Score, without: Score) -> bool:
+        """Whether one more effect leaves the model far off without halving its error both in windows and in the free run.
+
+        Something else is missing then, which a flexible enough effect imitates where it was fitted.
+        """
+        share = 1.0 - self.settings.selecting.least_gain_far_off
+        pairs = ((found.excess, without.excess), (found.free_run_excess, without.free_run_excess))
+        return found.windows > self.settings.errors.far_off and any(new > share * old for new, old in pairs)
+
+    def trusts_constants(self) -> bool:
+        """Whether the calibrated constants leave little of the nominal excess."""
+        return self._left < self.settings.proposing.refit_helps
+
+    def rejects_constants(self) -> bool:
+        """Whether they leave most of it."""
+        return self._left > self.settings.proposing.refit_fails
+
+    def rank(self, best: Score, measure: Measure, dataset: Dataset) -> Callable[[Model], float]:
+        """Order rivals by BIC on all of the data where the best comes near the noise, else by the held-out excess."""
+        near = best.windows < self.settings.errors.close
+        return (lambda model: model.bic(dataset)) if near else (lambda model: measure(model.score))
+
+    def can_compare_rivals(self, found: Score) -> bool:
+        """Whether the model is not far off: where so much is missing, no rival can be told from another."""
+        return found.windows <= self.settings.errors.far_off
+
+    def leaves_room(self, found: Model) -> bool:
+        """Whether held-out or fitted errors are above the noise."""
+        return max(found.score.windows, found.fitted.windows) > self.settings.errors.at_noise
+
+    def replaces(self, rival: Model, now: Model, rank: Callable[[Model], float]) -> bool:
+        """Whether the rival ranks first; by a share of the excess, where the model does not come near the noise."""
+        near = now.score.windows < self.settings.errors.close
+        least = 0.0 if near else self.settings.selecting.least_gain
+        return rank(rival) < (1.0 - least) * rank(now)
+
+    def contender_difference(self, removed: float) -> float:
+        """Compute a share of what was removed."""
+        return self.settings.selecting.same_gain * removed
+
+    def equivalent_difference(self, removed: float, left: float) -> float:
+        """Compute a share of what was removed, but no more than what is left."""
+        return min(self.contender_difference(removed), max(left, self.settings.selecting.same_excess))
+
+    def equivalence_level(self, best: Score, measure: Measure) -> float:
+        """Add that difference to the excess that the best one leaves."""
+        left = measure(best)
+        return left + self.equivalent_difference(measure(self.refitted) - left, left)
+
+    def verdict(self, accepted: Sequence[str], found: Score) -> str:
+        """Name effects that explain the data; else say whether the constants do."""
+        if accepted and self.explains(found):
+            return "effects"
+        if self.refitted.windows > self.settings.errors.explained:
+            return "unknown"
+        wrong = self.nominal.excess > self.settings.selecting.refit_needed * self.refitted.excess
+        return "parameters" if wrong and self.nominal.windows > self.settings.errors.nothing_left else "nothing_missing"
+
+    @property
+    def _left(self) -> float:
+        """Share of the nominal excess that the calibrated constants leave."""
+        return self.refitted.excess / self.nominal.excess
+
+    def _least(self, measure: Measure) -> float:
+        """Compute the excess that an effect must remove at least."""
+        numbers = self.settings.selecting
+        return max(numbers.least_removed, numbers.least_of_first * measure(self.refitted))

@@ -1,0 +1,144 @@
+"""Full calibrations of candidate models, in parallel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.calibrate.calibration import Calibration
+from flexarm_env.identify.calibrate.calibrator import Calibrator
+from flexarm_env.identify.progress import Progress
+from flexarm_env.identify.replay.error_measure import excess
+from flexarm_env.identify.select.model import Model, judge
+from flexarm_env.identify.select.screen import Trial, control_of
+from flexarm_env.identify.select.signatures import baseline, signatures
+from flexarm_env.identify.select.starts import candidates, first_start, sized
+
+#: The effect that is tried beside every other: alone it hides what friction explains, and friction hides it.
+COMPANION = "constant_torque"
+
+#: The error of a brief calibration on the fitted part, and the calibration.
+Brief = tuple[float, Calibration]
+
+
+def fit_models(
+    calibrator: Calibrator, effects: Sequence[tuple[str, ...]], arms: Sequence[Arm], progress: Progress, thorough: bool = False
+) -> list[Model]:
+    """Calibrate arms with the effects that they were given.
+
+    Args:
+        calibrator: of the recordings.
+        effects: of each arm.
+        arms: where to start.
+        progress: of these calibrations.
+        thorough: whether each is started from the nominal constants as well.
+    """
+    tasks = [(fit_model, (calibrator, names, arm, thorough)) for names, arm in zip(effects, arms, strict=True)]
+    models = []
+    for model in calibrator.workers.map(tasks):
+        models.append(model)
+        progress.at(len(models) / len(tasks), f"refitting with {' and '.join(model.effects)}")
+    return models
+
+
+def fit_model(calibrator: Calibrator, effects: tuple[str, ...], arm: Arm, thorough: bool = False) -> Model:
+    """Calibrate an arm with effects; if thorough, from the nominal constants as well."""
+    found = calibrator.calibrate(arm)
+    if thorough:
+        found = calibrator.or_from_nominal(found)
+    return judge(effects, found, calibrator.dataset)
+
+
+def fit_with_all_constants(
+    calibrator: Calibrator, found: Calibration, trials: Sequence[Trial], tried: Sequence[str], progress: Progress
+) -> list[Model]:
+    """Calibrate every effect together with all constants, biased ones reset, and choose the best.
+
+    Constants that compensate for the missing effect leave nothing for its signature to explain.
+
+    Args:
+        calibrator: of the recordings.
+        found: the model that lacks something.
+        trials: of the screening.
+        tried: effects that were calibrated in full already.
+        progress: of these calibrations.
+    """
+    dataset, numbers = calibrator.dataset, calibrator.settings.proposing
+    briefly, smaller, full = progress.split(5, 1, 4)
+    names = [n for n in candidates(found.arm, dataset) if found.arm.known[n].fitted and n not in tried]
+    reset = calibrator.reset_biased_constants(found, numbers.biased)
+    starts = [(n, start) for n in names for start in _starts(calibrator, n, reset, trials)]
+    fits = _fit_briefly(calibrator, [("", reset), *((n, reset.with_effect(n, **start)) for n, start in starts)], briefly)
+    control, _ = fits.pop("")
+    fits = _start_smaller(calibrator, reset, fits, control, smaller)
+    enough = numbers.briefly_better * excess(control)
+    better = [(error, name, fitted.arm) for name, (error, fitted) in fits.items() if excess(error) < enough]
+    best = sorted(better, key=lambda fit: fit[0])[: numbers.most_brief]
+    far = bool(best) and best[0][0] > calibrator.settings.errors.far_off
+    return fit_models(calibrator, [(n,) for _, n, _ in best], [arm for _, _, arm in best], full, thorough=far)
+
+
+def fit_in_place(calibrator: Calibrator, without: Arm, effects: Sequence[str], progress: Progress) -> list[Model]:
+    """Calibrate an arm with each of some effects, started where it explains most of what the arm leaves."""
+    models = []
+    for model in calibrator.workers.map([(_fit_from_signature, (calibrator, effect, without)) for effect in effects]):
+        models.append(model)
+        progress.at(len(models) / len(effects), f"refitting with {model.effects[0]} instead")
+    return models
+
+
+def fit_with_companion(calibrator: Calibrator, models: Sequence[Model], progress: Progress) -> list[Model]:
+    """Calibrate models with a constant torque beside each: alone it hides what friction explains, and friction hides it."""
+    dataset = calibrator.dataset
+    others = [m for m in models if m.effects != (COMPANION,)]
+    shares = calibrator.workers.map([(_share_of_companion, (calibrator, m.calibration)) for m in others])
+    least = calibrator.settings.proposing.least_offset
+    pairs = [m for m, share in zip(others, shares, strict=True) if share > least]
+    arms = [m.arm.with_effect(COMPANION, torque=0.0) for m in pairs]
+    far = min(m.score.windows for m in models) > dataset.settings.errors.far_off
+    return fit_models(calibrator, [(*m.effects, COMPANION) for m in pairs], arms, progress, thorough=far)
+
+
+def _start_smaller(
+    calibrator: Calibrator, reset: Arm, fits: dict[str, Brief], control: float, progress: Progress
+) -> dict[str, Brief]:
+    """Start effects anew from a smaller size where they began too large: at zero they would leave the control's error."""
+    dataset = calibrator.dataset
+    most = calibrator.settings.proposing.too_large * control
+    names = list(fits)
+    for share in calibrator.settings.screening.small:
+        worse = [n for n in names if fits[n][0] > most]
+        small = [(n, sized(reset, n, first_start(reset, n, dataset), share)) for n in worse]
+        again = _fit_briefly(calibrator, [(n, reset.with_effect(n, **start)) for n, start in small], progress)
+        fits = fits | {n: min(fit, fits[n], key=lambda f: f[0]) for n, fit in again.items()}
+    return fits
+
+
+def _fit_briefly(calibrator: Calibrator, arms: Sequence[tuple[str, Arm]], progress: Progress) -> dict[str, Brief]:
+    """Calibrate arms briefly; keep the best of each effect."""
+    fits: dict[str, Brief] = {}
+    results = calibrator.workers.map([(calibrator.briefly, (arm,)) for _, arm in arms])
+    for number, ((name, _), fit) in enumerate(zip(arms, results, strict=True), start=1):
+        fits[name] = min(fit, fits.get(name, fit), key=lambda f: f[0])
+        progress.at(number / len(arms), f"fitting {name or 'nothing'} and all constants")
+    return fits
+
+
+def _starts(calibrator: Calibrator, effect: str, arm: Arm, trials: Sequence[Trial]) -> list[dict[str, float]]:
+    """List the starts of an effect: where its trial ended, and its own first start if that did not help."""
+    control = control_of(trials).cost
+    own = [(t.arm.effects[effect], t.cost < control) for t in trials if t.effect == effect]
+    first = [] if any(helped for _, helped in own) else [first_start(arm, effect, calibrator.dataset)]
+    return [dict(start) for start, _ in own] + first
+
+
+def _fit_from_signature(calibrator: Calibrator, effect: str, without: Arm) -> Model:
+    dataset = calibrator.dataset
+    found = signatures(baseline(calibrator.uncalibrated(without), dataset), effect)
+    start = found[0].start if found else first_start(without, effect, dataset)
+    return fit_model(calibrator, (effect,), without.with_effect(effect, **start))
+
+
+def _share_of_companion(calibrator: Calibrator, found: Calibration) -> float:
+    """Compute the share of what a calibration leaves that looks like the companion."""
+    return sum(signature.explained for signature in signatures(baseline(found, calibrator.dataset), COMPANION))

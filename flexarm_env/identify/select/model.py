@@ -1,0 +1,60 @@
+"""A model: effects, a calibrated arm that has them, and its errors."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.calibrate.calibration import Calibration
+from flexarm_env.identify.replay.dataset import Dataset
+from flexarm_env.identify.replay.error_measure import Score, score
+
+
+@dataclass(frozen=True)
+class Model:
+    """Effects that an arm was given, the calibrated arm, and its errors.
+
+    Attributes:
+        effects: those that are judged here, in the order of their addition.
+        calibration: of the arm that has them.
+        score: errors on the held-out part.
+        fitted: errors on the fitted part.
+    """
+
+    effects: tuple[str, ...]
+    calibration: Calibration
+    score: Score
+    fitted: Score
+
+    @property
+    def arm(self) -> Arm:
+        """The calibrated arm."""
+        return self.calibration.arm
+
+    @property
+    def at_bound(self) -> bool:
+        """Whether a parameter of its effects ran to the end of its range: no size of the effect explains the data."""
+        for parameter in self.calibration.parameters:
+            section, name, *_ = parameter.path.split(".")
+            inside = self.arm.value(parameter.path) not in (parameter.low, parameter.high)
+            if section == "effects" and name in self.effects and not inside:
+                return True
+        return False
+
+    def bic(self, dataset: Dataset) -> float:
+        """Compute the Bayesian information criterion on all of the data (Schwarz, Ann. Stat. 6 (1978) 461).
+
+        The held-out part alone shows whether an effect is missing. More samples decide better between two rivals near the noise.
+        """
+        signals = len(dataset.signals)
+        fitted = sum(int(run.train.sum()) for run in dataset.runs) * signals
+        held = sum(len(run.train) for run in dataset.runs) * signals - fitted
+        errors = fitted * self.fitted.windows**2 + held * self.score.windows**2
+        return errors + len(self.calibration.parameters) * math.log(fitted + held)
+
+
+def judge(effects: tuple[str, ...], calibration: Calibration, dataset: Dataset) -> Model:
+    """Measure the errors of a calibrated arm."""
+    arm = calibration.arm
+    return Model(effects, calibration, score(arm, dataset), score(arm, dataset, held_out=False))

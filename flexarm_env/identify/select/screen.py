@@ -1,0 +1,85 @@
+"""Screen every effect that an arm could lack: each fitted alone from its most promising start, with the constants following."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.calibrate.calibration import Calibration
+from flexarm_env.identify.calibrate.calibrator import Calibrator
+from flexarm_env.identify.calibrate.least_squares import minimise
+from flexarm_env.identify.calibrate.objective import Objective, Weights
+from flexarm_env.identify.calibrate.parameters import FitParameters, effect_parameters
+from flexarm_env.identify.progress import Progress
+from flexarm_env.identify.select.signatures import Baseline, Signature, baselines, signatures
+from flexarm_env.identify.select.starts import candidates
+
+
+@dataclass(frozen=True)
+class Trial:
+    """An effect fitted with the constants following along their known slopes.
+
+    Attributes:
+        effect: its name; "" for none.
+        arm: with the fitted values.
+        cost: on the fitted part.
+        held_out: sum of squares on the held-out part.
+    """
+
+    effect: str
+    arm: Arm
+    cost: float
+    held_out: float
+
+
+def screen(calibrator: Calibrator, starts: Sequence[Calibration], progress: Progress) -> list[Trial]:
+    """Try every effect from some calibrations, and none; keep the best trial of each, best effect first."""
+    bases = baselines(starts, calibrator.dataset)
+    names = candidates(starts[0].arm, calibrator.dataset)
+    tasks = [(try_effect, (base, name)) for name in names for base in bases]
+    trials = [attempt(bases[0], None)]
+    for number, found in enumerate(calibrator.workers.map(tasks), start=1):
+        trials += found
+        progress.at(number / len(tasks), f"trying {len(names)} effects")
+    return best_trials(trials)
+
+
+def try_effect(base: Baseline, name: str) -> list[Trial]:
+    """Fit an effect from its most promising start, if it explains anything."""
+    return [attempt(base, signature) for signature in signatures(base, name)]
+
+
+def attempt(base: Baseline, signature: Signature | None) -> Trial:
+    """Fit an effect from a start, or none, with the constants following along their known slopes."""
+    arm, dataset, screening = base.arm, base.objective.dataset, base.numbers
+    name = "" if signature is None else signature.effect
+    if signature is not None:
+        arm = arm.with_effect(name, **signature.start)
+    added = effect_parameters(arm, name, dataset) if name else FitParameters()
+    prior = np.concatenate([base.objective.weights.prior, added.priors])
+    weights = Weights(base.objective.weights.sigma, prior)
+    objective = Objective(arm, dataset, base.objective.parameters + added, base.objective.torque_noise, weights)
+    start = added.position(arm)
+    steps, x = added.step_sizes(start, dataset.settings.parameters), np.concatenate([base.x, start])
+    numbers, iterations, tolerance = dataset.settings.least_squares, screening.iterations, screening.tolerance
+    solution = minimise(objective.residual, x, prior, steps, numbers, iterations, tolerance, base.jacobian)
+    best = objective.parameters.place(arm, solution.x)
+    held_out = objective.held_out_residual_of(best)
+    return Trial(name, best, solution.cost, float(held_out @ held_out))
+
+
+def best_trials(trials: Sequence[Trial]) -> list[Trial]:
+    """Keep the trial of least cost of each effect, best effect first by the cost on the held-out part."""
+    best: dict[str, Trial] = {}
+    for trial in trials:
+        if trial.effect not in best or trial.cost < best[trial.effect].cost:
+            best[trial.effect] = trial
+    return sorted(best.values(), key=lambda t: t.held_out)
+
+
+def control_of(trials: Sequence[Trial]) -> Trial:
+    """Find the trial of no effect."""
+    return next(trial for trial in trials if not trial.effect)

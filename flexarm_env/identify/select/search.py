@@ -1,0 +1,238 @@
+"""Search for the effects that a model lacks: forward, swap, drop; stepwise where nothing stands out alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from flexarm_env.identify.calibrate.calibrator import Calibrator
+from flexarm_env.identify.progress import Progress
+from flexarm_env.identify.select.criteria import Criteria, Measure
+from flexarm_env.identify.select.fits import COMPANION, fit_models
+from flexarm_env.identify.select.model import Model, judge
+from flexarm_env.identify.select.propose import nearest, none_comes_near, others, starts_of_search
+from flexarm_env.identify.select.screen import Trial, control_of, screen
+from flexarm_env.identify.select.stepwise import extend_chain
+from flexarm_env.identify.select.swap import Comparison, compare_rivals
+from flexarm_env.identify.select.trace import Accepted, Trace, Tried
+
+
+@dataclass(frozen=True)
+class Search:
+    """A search over effects. Every method takes the trace so far and gives a longer one.
+
+    Attributes:
+        calibrator: of the recordings.
+        criteria: by which models are judged.
+    """
+
+    calibrator: Calibrator
+    criteria: Criteria
+
+    def run(self, base: Model, progress: Progress) -> Trace:
+        """Search from the calibrated constants: add the best effect, calibrate, again, until nothing is left or nothing helps."""
+        most = self.calibrator.settings.selecting.most_effects
+        *rounds, last = progress.split(*([3] * most), 1)
+        trace = Trace.begin(base)
+        for span in rounds:
+            longer = self.add(trace, span)
+            added, trace = len(longer.accepted) > len(trace.accepted), longer
+            if added and len(trace.accepted) > 1:  # an effect in the wrong place calls for one more
+                trace = self.swap(trace, span)
+            if not added or len(trace.accepted) >= most:
+                break
+        if len(trace.accepted) == 1:
+            trace = self.swap(trace, last)
+        trace = self.drop_useless(trace)
+        if base.score.windows <= self.calibrator.settings.errors.explained or self.criteria.explains(trace.model.score):
+            return trace
+        longer = self.combine(trace, last, all_constants=True)
+        return self.drop_useless(self.swap(longer, last)) if len(longer.steps) > len(trace.steps) else longer
+
+    def add(self, trace: Trace, progress: Progress) -> Trace:
+        """Add the effect that removes most, if it is worthwhile; record all that were tried."""
+        sufficient = self.criteria.is_sufficient(trace.model.score)
+        if sufficient and trace.ranking:
+            return trace
+        screening, fitting, more = progress.split(6, 1, 3)
+        starts = starts_of_search(self.calibrator, self.criteria, trace.model)
+        trials = screen(self.calibrator, starts, screening)
+        if not trace.ranking:
+            trace = trace.then("screen", tried=_gains_of_screening(trials))
+        if sufficient:
+            return trace
+        models = nearest(self.calibrator, self.criteria, trials, fitting)
+        if not trace.accepted:
+            trace = self._combine_at_once(trace, models, more)
+            if trace.accepted:
+                return trace
+        models = others(self.calibrator, self.criteria, models, trials, trace.model, more)
+        if trace.accepted:
+            trace = self._recalibrate(trace)
+        if not models:
+            return trace
+        measure = self.criteria.measure([m.score for m in models])
+        models = sorted(models, key=lambda m: measure(m.score))
+        trace = trace.then("fit", tried=_gains(trace, models[::-1], measure))
+        possible = [m for m in models if not m.at_bound]
+        return self._accept(trace, possible) if possible else trace
+
+    def combine(self, trace: Trace, progress: Progress, all_constants: bool) -> Trace:
+        """Accept effects that explain the data only together, if there are some.
+
+        Args:
+            trace: so far.
+            progress: of this stage.
+            all_constants: whether effects are calibrated with all constants, which may compensate for them.
+        """
+        chain = extend_chain(self.calibrator, self.criteria, trace.chain, all_constants, progress) if trace.chain else ()
+        trace = replace(trace, chain=chain)
+        if not chain or not self.criteria.is_fully_explained(chain[-1].score):
+            return trace
+        accepted = [Accepted(m.effects[-1], (m.effects[-1],), m.score) for m in chain[1:]]
+        tried = [
+            Tried(step.effects[-1], _share(1.0 - step.score.excess / without.score.excess), chain[-1].calibration)
+            for without, step in pairwise(chain)
+        ]
+        return trace.then("combine", chain[-1], accepted, tried)
+
+    def swap(self, trace: Trace, progress: Progress) -> Trace:
+        """Give an effect's place to one that it is confused with, where that fits better beside everything else.
+
+        An effect that came in first was compared with its rivals while others were missing still, and a companion with none.
+        """
+        for place, effect in enumerate(trace.effects):
+            if not self.criteria.can_compare_rivals(trace.model.score):
+                break
+            if effect == COMPANION or self.criteria.leaves_room(trace.model):
+                comparison = compare_rivals(self.calibrator, self.criteria, effect, trace.model, progress)
+                trace = exchange(trace, place, comparison)
+        names = trace.effects
+        kept = [
+            replace(a, equivalent=tuple(n for n in a.equivalent if n == a.equivalent[0] or n not in names))
+            for a in trace.accepted
+        ]
+        return trace if kept == list(trace.accepted) else trace.then("swap", accepted=kept)
+
+    def drop_useless(self, trace: Trace) -> Trace:
+        """Drop an effect that later ones have made useless."""
+        for effect in trace.effects if len(trace.accepted) > 1 else []:
+            calibration = self.calibrator.calibrate(trace.model.arm.without_effect(effect))
+            without = judge((), calibration, self.calibrator.dataset)
+            measure = self.criteria.measure([without.score, trace.model.score])
+            if not self.criteria.is_worthwhile(without.score, trace.model.score, measure):
+                trace = trace.then("drop", without, [a for a in trace.accepted if a.effect != effect])
+        return trace
+
+    def _combine_at_once(self, trace: Trace, models: Sequence[Model], progress: Progress) -> Trace:
+        """Accept the first effect and more beside it where none comes near alone, but some explain the data together."""
+        possible = [m for m in models if not m.at_bound]
+        if not possible:
+            return trace
+        measure = self.criteria.measure([m.score for m in possible])
+        best = min(possible, key=lambda m: measure(m.score))
+        trace = replace(trace, chain=(*trace.chain, best))
+        if not none_comes_near(self.criteria, models, trace.model.score):
+            return trace
+        return self.combine(trace, progress, all_constants=False)
+
+    def _recalibrate(self, trace: Trace) -> Trace:
+        """Calibrate once more without anything new: that gain is no merit of another effect."""
+        with self.calibrator.workers.threads():
+            calibration = self.calibrator.calibrate(trace.model.arm)
+        again = judge((), calibration, self.calibrator.dataset)
+        if again.score.windows >= trace.model.score.windows:
+            return trace
+        return trace.then("recalibrate", again, _with_last_score(trace.accepted, again))
+
+    def _accept(self, trace: Trace, models: Sequence[Model]) -> Trace:
+        """Accept the best model if it removes enough; the simplest of those that remove nearly as much."""
+        measure, before = self.criteria.measure([m.score for m in models]), trace.model.score
+        winner = self._simplest(models, measure)
+        if not self.criteria.is_worthwhile(before, winner.score, measure):
+            return trace
+        if trace.accepted and self.criteria.stays_inadequate(winner.score, before):
+            return trace
+        alike = [m for m in models if len(m.effects) == len(winner.effects)]
+        trace, rivals = self._rivals(trace, winner, alike, measure)
+        winner, names = rivals[0], tuple(m.effects[0] for m in rivals)
+        with self.calibrator.workers.threads():
+            calibration = self.calibrator.polish(winner.calibration)
+        model = judge((), calibration, self.calibrator.dataset)
+        first, *companions = winner.effects
+        added = [Accepted(first, names, model.score), *(Accepted(n, (n,), model.score) for n in companions)]
+        return trace.then("accept", model, [*trace.accepted, *added])
+
+    def _simplest(self, models: Sequence[Model], measure: Measure) -> Model:
+        """Choose the best model; a single effect where a companion beside one adds nothing worthwhile."""
+        winner, singles = models[0], [m for m in models if len(m.effects) == 1]
+        if len(winner.effects) == 1 or not singles:
+            return winner
+        measures: tuple[Measure, ...] = (measure, lambda s: s.excess)  # far off, one model may rest where it should move
+        worthwhile = any(self.criteria.is_worthwhile(singles[0].score, winner.score, m) for m in measures)
+        return winner if worthwhile else singles[0]
+
+    def _rivals(self, trace: Trace, winner: Model, models: Sequence[Model], measure: Measure) -> tuple[Trace, list[Model]]:
+        """Find the models between which the data do not decide, best first, each calibrated from nominal constants.
+
+        A calibration that began with biased constants leaves more than the difference between near rivals.
+        """
+        calibrator, dataset = self.calibrator, self.calibrator.dataset
+        left = measure(winner.score)
+        removed = measure(trace.model.score) - left
+        most = left + self.criteria.contender_difference(removed)
+        first = [m for m in models if m is winner or measure(m.score) <= most]
+        if len(first) == 1:
+            return trace, first
+        arms = [calibrator.nominal_with_effects_of(m.arm) for m in first]
+        again = fit_models(calibrator, [m.effects for m in first], arms, Progress())
+        rank = self.criteria.rank(winner.score, measure, dataset)
+        better = [min(pair, key=rank) for pair in zip(first, again, strict=True)]
+        if len(winner.effects) == 1:
+            trace = trace.then("fit", tried=_gains(trace, better, measure))
+        left = min(measure(m.score) for m in better)
+        most = left + self.criteria.equivalent_difference(removed, left)
+        return trace, sorted([m for m in better if measure(m.score) <= most], key=rank)
+
+
+def exchange(trace: Trace, place: int, comparison: Comparison) -> Trace:
+    """Put the effect that fits best in a place, with all that the recordings cannot tell from it."""
+    name, now, ranking = comparison.effect, trace.accepted[place], trace.ranking
+    gain = max((ranking[n].gain for n in (name, now.effect) if n in ranking), default=0.0)
+    models = {name: comparison.best, **comparison.alike}
+    tried = [Tried(n, ranking[n].gain if n in ranking else gain, m.calibration) for n, m in models.items()]
+    untried = [n for n in now.equivalent if n not in comparison.tried]
+    entry = replace(now, equivalent=(name, *comparison.alike, *untried))
+    if name == now.effect:
+        return trace.then("swap", accepted=_placed(trace.accepted, place, entry), tried=tried)
+    tried.append(Tried(name, gain, comparison.best.calibration))
+    accepted = _placed(trace.accepted, place, replace(entry, effect=name))
+    return trace.then("swap", comparison.best, _with_last_score(accepted, comparison.best), tried)
+
+
+def _placed(accepted: Sequence[Accepted], place: int, entry: Accepted) -> list[Accepted]:
+    return [*accepted[:place], entry, *accepted[place + 1 :]]
+
+
+def _with_last_score(accepted: Sequence[Accepted], model: Model) -> list[Accepted]:
+    """Give the last accepted effect the score of a model with all of them."""
+    return [*accepted[:-1], replace(accepted[-1], score=model.score)]
+
+
+def _gains(trace: Trace, models: Sequence[Model], measure: Measure) -> list[Tried]:
+    """Compute the gains of models of one effect each, but for effects that are accepted already."""
+    before = measure(trace.model.score)
+    single = [m for m in models if len(m.effects) == 1 and m.effects[0] not in trace.effects]
+    return [Tried(m.effects[0], _share(1.0 - measure(m.score) / before), m.calibration) for m in single]
+
+
+def _gains_of_screening(trials: Sequence[Trial]) -> list[Tried]:
+    control = control_of(trials)
+    return [Tried(t.effect, _share(1.0 - t.held_out / control.held_out)) for t in trials if t.effect]
+
+
+def _share(gain: float) -> float:
+    return float(np.clip(gain, 0.0, 1.0))

@@ -1,0 +1,176 @@
+"""Signatures of effects: the change of the residual that each would make, with what constants can explain projected out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.calibrate.calibration import Calibration
+from flexarm_env.identify.calibrate.least_squares import jacobian
+from flexarm_env.identify.calibrate.objective import Objective, ObserverBank, objective_at
+from flexarm_env.identify.replay.dataset import Dataset
+from flexarm_env.identify.replay.scales import torque_scale
+from flexarm_env.identify.select.starts import sized, starts_of
+from flexarm_env.identify.settings import Screening
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Baseline:
+    """A calibrated arm at one level of process noise, against which effects are screened.
+
+    Attributes:
+        objective: at the arm.
+        x: the arm's values (x,).
+        residual: (rows,).
+        jacobian: of the arm's values (rows, x).
+        orthonormal: (rows, x) basis of what the values can explain under their priors.
+    """
+
+    objective: Objective
+    x: Floats
+    residual: Floats
+    jacobian: Floats
+    orthonormal: Floats
+
+    @property
+    def arm(self) -> Arm:
+        """The calibrated arm."""
+        return self.objective.arm
+
+    @property
+    def numbers(self) -> Screening:
+        """Numbers of the screening."""
+        return self.objective.dataset.settings.screening
+
+    def unexplained(self, residual: Floats) -> Floats:
+        """Project out of a residual (rows,) what the constants could explain."""
+        left: Floats = residual - self.orthonormal @ (self.orthonormal.T @ residual)
+        return left
+
+    def change(self, effect: str, values: dict[str, float]) -> Floats:
+        """Compute the change of the residual (rows,) that an effect makes."""
+        return self.objective.residual_of(self.arm.with_effect(effect, **values)) - self.residual
+
+
+@dataclass(frozen=True)
+class Signature:
+    """An effect at the values from which it promises most.
+
+    Attributes:
+        effect: its name.
+        start: its values.
+        explained: share of the residual that it would explain there.
+        factor: by which its size would have to change for that.
+    """
+
+    effect: str
+    start: dict[str, float]
+    explained: float
+    factor: float = 1.0
+
+
+def baseline(found: Calibration, dataset: Dataset, levels: Sequence[float] = ()) -> Baseline:
+    """Build the baseline of a calibrated arm at the first level of process noise at which something is left to explain.
+
+    Args:
+        found: the calibrated arm.
+        dataset: the recordings.
+        levels: over the rms torque of the drive; those of `process_noise.screening` if left out.
+    """
+    settings = dataset.settings
+    scale, own = torque_scale(found.arm, dataset.runs), found.arm.constants["drive"]["torque_noise"]
+    for level in levels or settings.process_noise.screening:
+        torque_noise = max(level * scale, own)
+        objective = objective_at(found.arm, dataset, found.parameters, torque_noise).weighted_by(found.arm)
+        visible = np.sqrt(np.mean((objective.weights.sigma / dataset.noise) ** 2)) > settings.screening.visible
+        if torque_noise == own or visible:
+            break
+    return _baseline(objective, found)
+
+
+def baselines(starts: Sequence[Calibration], dataset: Dataset) -> list[Baseline]:
+    """Build baselines that weigh errors alike, so that candidates from one can be compared with candidates from another."""
+    first = baseline(starts[0], dataset)
+    alike = [replace(first.objective, arm=start.arm, observers=ObserverBank()) for start in starts[1:]]
+    return [first, *(_baseline(objective, start) for objective, start in zip(alike, starts[1:], strict=True))]
+
+
+def _baseline(objective: Objective, found: Calibration) -> Baseline:
+    x = objective.parameters.position(found.arm)
+    residual = objective.residual(x)
+    slopes = jacobian(objective.residual, x, found.solution.steps.now)
+    prior = np.diag(1.0 / objective.weights.prior)
+    orthonormal = np.linalg.qr(np.vstack([slopes, prior]))[0][: len(residual)]
+    return Baseline(objective, x, residual, slopes, orthonormal)
+
+
+def signatures(base: Baseline, effect: str) -> list[Signature]:
+    """Find the most promising start of an effect, if it explains anything of the residual.
+
+    The effect's own starts are ranked by a finite secant. The best are tried at the size that it gives.
+    """
+    numbers = base.numbers
+    starts = starts_of(base.arm, effect, base.objective.dataset)
+    if len(starts) <= numbers.few_starts and base.arm.known[effect].fitted:
+        starts += [sized(base.arm, effect, starts[0], share) for share in numbers.small]
+    secants = sorted((_secant(base, effect, start) for start in starts), key=lambda s: -s.explained)
+    best = max((_at_its_size(base, s) for s in secants[: numbers.starts_scanned]), key=lambda s: s.explained)
+    return [best] if best.explained > numbers.least_explained else []
+
+
+def _secant(base: Baseline, effect: str, start: dict[str, float]) -> Signature:
+    """Extrapolate what an effect would explain if its change of the residual grew in proportion to its size."""
+    change = base.unexplained(base.change(effect, start))
+    left = base.unexplained(base.residual)
+    power, total = float(change @ change), float(left @ left)
+    if power <= base.numbers.least_change * total:
+        return Signature(effect, start, 0.0, 0.0)
+    along = float(change @ left)
+    if along > 0.0 and "phase" in start:  # the sine turned round
+        start = {**start, "phase": start["phase"] - float(np.copysign(np.pi, start["phase"]))}
+        along = -along
+    return Signature(effect, start, along**2 / power / total, -along / power)
+
+
+def _at_its_size(base: Baseline, secant: Signature) -> Signature:
+    """Evaluate an effect at the size that its secant gives, or, where that does not hold, at the best of a scan.
+
+    The error of a gap or a delay has a narrow valley that no slope shows from outside.
+    """
+    numbers, factors = base.numbers, _factors(base, secant)
+    if factors == (1.0,) or secant.explained == 0.0:
+        return _at_size(base, secant, 1.0)
+    found = [_unscaled(secant)]
+    if secant.factor > 0.0 or min(factors) < 0.0:
+        largest = numbers.largest_factor
+        found.append(_at_size(base, secant, float(np.clip(secant.factor, -largest, largest))))
+        if found[-1].explained > numbers.linear * secant.explained:
+            return found[-1]
+    return max(found + [_at_size(base, secant, factor) for factor in factors], key=lambda s: s.explained)
+
+
+def _unscaled(secant: Signature) -> Signature:
+    """Evaluate an effect at the size of its secant: the parabola along it, at 1."""
+    factor = secant.factor
+    return Signature(secant.effect, secant.start, secant.explained * (2.0 * factor - 1.0) / factor**2)
+
+
+def _factors(base: Baseline, signature: Signature) -> tuple[float, ...]:
+    """List the factors of an effect's size to scan: of both signs where it has two, one where it cannot be scaled."""
+    effect, sizes = base.arm.known[signature.effect], base.numbers.sizes
+    if not effect.fitted:
+        return (1.0,)
+    return (*sizes, *(-size for size in sizes)) if effect.parameters[effect.size()].low < 0.0 else sizes
+
+
+def _at_size(base: Baseline, signature: Signature, factor: float) -> Signature:
+    values = sized(base.arm, signature.effect, signature.start, factor)
+    left = base.unexplained(base.objective.residual_of(base.arm.with_effect(signature.effect, **values)))
+    before = base.unexplained(base.residual)
+    return Signature(signature.effect, values, 1.0 - float(left @ left) / float(before @ before))

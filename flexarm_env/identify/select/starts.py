@@ -1,0 +1,60 @@
+"""Which effects an arm could lack, and the values from which each of them is tried."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.replay.dataset import Dataset
+
+
+def candidates(arm: Arm, dataset: Dataset) -> list[str]:
+    """List the effects that an arm could lack."""
+    fine = arm.constants.get("beam", {}).get("elements", 0.0) >= dataset.settings.screening.fine_beam
+    lacking = [n for n in arm.known if n not in arm.effects and arm.can_have(n) and not (n == "higher_modes" and fine)]
+    return [n for n in lacking if not arm.known[n].modifies or arm.known[n].modifies in arm.effects]
+
+
+def rivals_of(effect: str, without: Arm, dataset: Dataset) -> list[str]:
+    """List the effects that an effect is confused with, of those that an arm without it lacks.
+
+    There are none for one that another effect of the arm modifies, which could not stand without it.
+    """
+    known = without.known
+    if any(known[n].modifies == effect for n in without.effects):
+        return []
+    return [n for n in candidates(without, dataset) if n in known[effect].confused_with or effect in known[n].confused_with]
+
+
+def starts_of(arm: Arm, effect: str, dataset: Dataset) -> list[dict[str, float]]:
+    """List the values from which an effect is tried, in the scales of the data; for offsets, one start for each sensor."""
+    known = arm.known[effect]
+    if effect == "sensor_offset":
+        noise = dict(zip(dataset.signals, dataset.noise, strict=True))
+        sensors = [{key: (float(noise[key]) if key == signal else 0.0) for key in known.parameters} for signal in noise]
+        return [start for _ in known.starts() for start in sensors]
+    return [_scaled(arm, effect, start, dataset) for start in known.starts()]
+
+
+def first_start(arm: Arm, effect: str, dataset: Dataset) -> dict[str, float]:
+    """Choose the values from which an effect is tried first."""
+    return _scaled(arm, effect, arm.known[effect].starts()[0], dataset)
+
+
+def sized(arm: Arm, effect: str, start: Mapping[str, float], factor: float) -> dict[str, float]:
+    """Multiply the size of an effect, within bounds; a parameter that is absent at infinity is divided."""
+    values = dict(start)
+    for key, p in arm.known[effect].parameters.items():
+        if p.null is not None:
+            value = values[key] / factor if p.null == math.inf else values[key] * factor
+            values[key] = min(max(value, p.low), p.high)
+    return values
+
+
+def _scaled(arm: Arm, effect: str, start: Mapping[str, float], dataset: Dataset) -> dict[str, float]:
+    """Convert a start to the scales of the data, within the bounds."""
+    parameters = arm.known[effect].parameters
+    values = {key: p.typical for key, p in parameters.items()}
+    values |= {key: value * parameters[key].scaled_by(dataset.scales) for key, value in start.items()}
+    return {key: min(max(v, parameters[key].low), parameters[key].high) for key, v in values.items()}

@@ -1,0 +1,69 @@
+"""Rivals of an accepted effect: one takes its place where it fits better beside everything else."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from flexarm_env.identify.calibrate.calibrator import Calibrator
+from flexarm_env.identify.progress import Progress
+from flexarm_env.identify.select.criteria import Criteria
+from flexarm_env.identify.select.fits import fit_in_place
+from flexarm_env.identify.select.model import Model, judge
+from flexarm_env.identify.select.starts import rivals_of
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """An effect compared with its rivals, each beside everything else that was accepted.
+
+    Attributes:
+        effect: the one that fits best.
+        best: the model with it.
+        alike: models with others that leave as little, by effect.
+        tried: all effects that were compared.
+    """
+
+    effect: str
+    best: Model
+    alike: dict[str, Model]
+    tried: frozenset[str]
+
+
+def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now: Model, progress: Progress) -> Comparison:
+    """Compare an effect of a model with its rivals.
+
+    Args:
+        calibrator: of the recordings.
+        criteria: of the search.
+        effect: one of those of the model.
+        now: the model with everything that was accepted.
+        progress: of these calibrations.
+    """
+    without = now.arm.without_effect(effect)
+    names = rivals_of(effect, without, calibrator.dataset)
+    rivals = [m for m in fit_in_place(calibrator, without, names, progress) if not m.at_bound]
+    if not rivals:
+        return Comparison(effect, now, {}, frozenset([effect]))
+    measure = criteria.measure([now.score, *(m.score for m in rivals)])
+    rank = criteria.rank(now.score, measure, calibrator.dataset)
+    rivals.sort(key=rank)
+    rivals[0] = _polish_near(calibrator, rivals[0], now)
+    first = rivals[0]
+    better = criteria.replaces(first, now, rank)
+    if replace(now, effects=(effect,)).at_bound:  # no size of it explains the data
+        better = better or measure(first.score) <= criteria.equivalence_level(now.score, measure)
+    every = {effect: now} | {m.effects[0]: m for m in rivals}
+    taken = first.effects[0] if better else effect
+    level = criteria.equivalence_level(every[taken].score, measure)
+    alike = {name: m for name, m in every.items() if name != taken and measure(m.score) <= level}
+    return Comparison(taken, every[taken], alike, frozenset(every))
+
+
+def _polish_near(calibrator: Calibrator, rival: Model, now: Model) -> Model:
+    """Continue the calibration of a rival, unless it is far off and the model is near, so that it has no chance."""
+    errors = calibrator.settings.errors
+    if now.score.windows <= errors.close and rival.score.windows >= errors.far_off:
+        return rival
+    with calibrator.workers.threads():
+        polished = judge(rival.effects, calibrator.polish(rival.calibration), calibrator.dataset)
+    return rival if polished.at_bound else polished

@@ -1,0 +1,133 @@
+"""The history of a search: its steps, from which accepted effects, ranking and errors are read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.calibrate.calibration import Calibration
+from flexarm_env.identify.replay.error_measure import Score
+from flexarm_env.identify.select.model import Model
+
+
+@dataclass(frozen=True)
+class Tried:
+    """One effect that was tried.
+
+    Attributes:
+        effect: its name.
+        gain: share of the excess error that it removes, 0 to 1.
+        calibration: with it; None where it was only screened.
+    """
+
+    effect: str
+    gain: float
+    calibration: Calibration | None = None
+
+
+@dataclass(frozen=True)
+class Accepted:
+    """One accepted effect.
+
+    Attributes:
+        effect: its name.
+        equivalent: all that the data cannot tell from it, itself first.
+        score: errors after it was added.
+    """
+
+    effect: str
+    equivalent: tuple[str, ...]
+    score: Score
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of a search.
+
+    Attributes:
+        action: "calibrate", "screen", "fit", "recalibrate", "accept", "combine", "swap" or "drop".
+        model: the best one after the step.
+        accepted: effects after the step.
+        tried: effects that the step compared.
+    """
+
+    action: str
+    model: Model
+    accepted: tuple[Accepted, ...] = ()
+    tried: tuple[Tried, ...] = ()
+
+
+@dataclass(frozen=True)
+class Trace:
+    """The history of a search.
+
+    Attributes:
+        steps: in their order; the first one calibrates the constants.
+        chain: models of one more effect each, which stepwise addition goes on with.
+    """
+
+    steps: tuple[Step, ...]
+    chain: tuple[Model, ...]
+
+    @classmethod
+    def begin(cls, base: Model) -> Trace:
+        """Begin with the calibrated constants."""
+        return cls((Step("calibrate", base),), (base,))
+
+    def then(
+        self, action: str, model: Model | None = None, accepted: Sequence[Accepted] | None = None, tried: Sequence[Tried] = ()
+    ) -> Trace:
+        """Append a step; model and accepted effects stay as they are where they are left out."""
+        taken = self.accepted if accepted is None else tuple(accepted)
+        found = replace(model or self.model, effects=tuple(a.effect for a in taken))
+        return replace(self, steps=(*self.steps, Step(action, found, taken, tuple(tried))))
+
+    @property
+    def model(self) -> Model:
+        """The best model so far."""
+        return self.steps[-1].model
+
+    @property
+    def accepted(self) -> tuple[Accepted, ...]:
+        """The effects accepted so far."""
+        return self.steps[-1].accepted
+
+    @property
+    def effects(self) -> list[str]:
+        """Names of the accepted effects."""
+        return [a.effect for a in self.accepted]
+
+    @property
+    def ranking(self) -> dict[str, Tried]:
+        """Every effect that was tried, as it was tried last."""
+        return {tried.effect: tried for step in self.steps for tried in step.tried}
+
+    @property
+    def open_hypotheses(self) -> dict[str, Arm]:
+        """The arms between which the recordings do not decide, by effect; the best one alone, where they do."""
+        ranking = self.ranking
+        for accepted in self.accepted:
+            beside = set(self.effects) - {accepted.effect}
+            tried = {name: ranking[name].calibration for name in accepted.equivalent[1:] if name in ranking}
+            fitted = {name: c.arm for name, c in tried.items() if c is not None and beside <= set(c.arm.effects)}
+            if fitted:
+                return {accepted.effect: self.model.arm, **fitted}
+        return {"": self.model.arm}
+
+    def as_json(self) -> list[dict[str, Any]]:
+        """Convert to plain data: of each step its action, effects, errors before and after, and what it tried."""
+        rows = []
+        for before, step in zip((self.steps[0], *self.steps), self.steps, strict=False):
+            rows.append(
+                {
+                    "action": step.action,
+                    "effects": [a.effect for a in step.accepted],
+                    "equivalent": [list(a.equivalent) for a in step.accepted],
+                    "error": {"before": before.model.score.windows, "after": step.model.score.windows},
+                    "free_run": {"before": before.model.score.free_run, "after": step.model.score.free_run},
+                    "tried": [{"effect": t.effect, "gain": t.gain} for t in step.tried],
+                }
+            )
+        return rows

@@ -1,0 +1,378 @@
+"""Every tuned number of the method: its value, its meaning, and how it was found.
+
+One frozen dataclass per stage; `Settings` holds them all. Results carry the settings under which they were made, and
+`flexarm diagnose --settings` prints them. Errors are rms over the noise, so that 1 is perfect; an excess is a variance over that
+of the noise, less 1.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+UNKNOWN = "not known"
+#: Error over noise of a reading that is not finite: any large finite number.
+FAILED_ERROR = 1e6
+#: Smallest excess of an error and smallest command [A or V], so that ratios to them stay finite.
+LEAST_EXCESS = LEAST_COMMAND = 1e-9
+#: Largest logarithm of a value over its origin, so that the exponential stays finite.
+LARGEST_LOG = 20.0
+#: Smallest norm that divides.
+LEAST_NORM = 1e-300
+
+
+def tuned(value: Any, meaning: str, found: str = UNKNOWN, unit: str = "") -> Any:
+    """Declare a number of the method.
+
+    Args:
+        value: a number, or a tuple of numbers.
+        meaning: a sentence for a person.
+        found: how the value was found: a paper, a sweep, the seeds of the benchmark; `UNKNOWN` where nobody wrote it down.
+        unit: SI unit; "" for a ratio or a count.
+    """
+    return field(default=value, metadata={"meaning": meaning, "found": found, "unit": unit})
+
+
+@dataclass(frozen=True)
+class Number:
+    """One tuned number, for tables.
+
+    Attributes:
+        stage: the field of `Settings` that holds it.
+        name: within the stage.
+        value: a number, or a tuple of numbers.
+        unit: SI unit; "" for a ratio or a count.
+        meaning: a sentence.
+        found: how it was found.
+    """
+
+    stage: str
+    name: str
+    value: Any
+    unit: str
+    meaning: str
+    found: str
+
+
+@dataclass(frozen=True)
+class ErrorScale:
+    """Rungs of one ladder: the error of a model over the noise."""
+
+    converged: float = tuned(1.002, "A calibration that ends below this is not continued.")
+    at_noise: float = tuned(1.01, "Rivals of an accepted effect are tried where the error is above this.")
+    calibrated: float = tuned(1.02, "A calibration that ends below this is not restarted from the nominal constants.")
+    near: float = tuned(1.03, "Above this a calibration that ends close to the noise is continued twice.")
+    nothing_left: float = tuned(1.1, "A held-out error below this leaves nothing to explain.")
+    explained: float = tuned(1.2, "A held-out error in windows below this is explained, whatever share was removed.")
+    close: float = tuned(1.4, "A model below this is close to the noise: rivals are ordered by BIC, and calibrations refined.")
+    free_run_explained: float = tuned(1.5, "A held-out error of the free run below this is explained.")
+    far_off: float = tuned(3.0, "A model above this is far off: something is missing.")
+
+
+@dataclass(frozen=True)
+class Preparation:
+    """How recordings are prepared, split and checked before anything is calibrated."""
+
+    held_out_share: float = tuned(0.35, "Share of each recording, at its end, that no calibration sees.")
+    default_noise: float = tuned(2e-3, "Noise of a signal without stated noise, over the signal's range.")
+    least_noise: float = tuned(1e-12, "Noise of a constant signal without stated noise.", "guards a division", "SI")
+    uneven: float = tuned(1e-3, "Sampling counts as uneven where a step differs from the median by more than this share.")
+    window: float = tuned(1.0, "Length of the windows in which errors are measured.", "chosen for the public definition", "s")
+    least_window_samples: int = tuned(10, "Shortest window.", unit="samples")
+    fewest_samples: int = tuned(50, "Shortest recording.", unit="samples")
+    shortest: float = tuned(1.0, "Recordings that are shorter together are insufficient.", unit="s")
+    least_motion: float = tuned(8.0, "Motion below this multiple of a signal's noise is insufficient.")
+    at_limit: float = tuned(0.999, "Share of the largest command at which a command counts as at its limit.")
+    much_at_limit: float = tuned(0.3, "Share of samples at the limit that is worth a note.")
+    fewest_levels: int = tuned(4, "A command with no more levels than this is a square wave, not a saturated one.")
+    settling: float = tuned(
+        0.05,
+        "Where torque noise is stated, errors count from this time on: before, they show how far the start was off.",
+        "the published recipe for EMPS drops its first 49 ms (Janot, Gautier and Brunot 2019)",
+        "s",
+    )
+    late_least_shown: float = tuned(0.05, "Less is held out where the fitted part shows less than this share of the excess.")
+    late_least_held_out: float = tuned(0.1, "Share of a recording's time and samples that stays held out.")
+
+
+@dataclass(frozen=True)
+class ReferenceSizes:
+    """Quantities in recordings of the thesis's arm, for which typical sizes of effects are given."""
+
+    torque: float = tuned(0.35, "Rms torque of the drive.", "recordings of the arm `thesis`", "N*m")
+    angle: float = tuned(2.5, "Range of the hub's angle.", "recordings of the arm `thesis`", "rad")
+    speed: float = tuned(0.8, "Range of the angle over the root of the time.", "recordings of the arm `thesis`", "rad/s**0.5")
+    command: float = tuned(5.0, "Largest command.", "recordings of the arm `thesis`", "A")
+    strain: float = tuned(9.0, "Range of a strain gage.", "recordings of the arm `thesis`", "V")
+    inertia: float = tuned(0.147, "Inertia at the hub, motor included.", "arm `thesis`, Table A.1", "kg*m**2")
+    least_ratio: float = tuned(1e-9, "Smallest ratio of a size to its reference.", "guards a division")
+    least_speed: float = tuned(1e-12, "Smallest speed scale of recordings.", "guards a division", "rad/s**0.5")
+
+
+@dataclass(frozen=True)
+class InitialStates:
+    """How the state at the start of a recording is estimated."""
+
+    still: float = tuned(10.0, "A hub within this multiple of the noise of its first angle is still.")
+    held_time: float = tuned(0.1, "A hub that is still for this long counts as held.", unit="s")
+    vibrates: float = tuned(2.0, "A beam signal of a held hub that scatters by this multiple of its noise vibrates.")
+    significant: float = tuned(6.0, "Multiple of the standard deviation at which a start differs from rest.")
+    at_rest: float = tuned(3.0, "A first speed within this multiple of the noise is one of rest.")
+    at_zero: float = tuned(4.0, "A first angle within this multiple of the noise is zero.")
+    first_samples: int = tuned(20, "Samples of the parabola from which a moving hub's speed is estimated.", unit="samples")
+    first_time: float = tuned(0.004, "Stretch whose mean shows a deflected beam.", unit="s")
+    longest_held: float = tuned(0.5, "Longest stretch that the state of a held hub is fitted to.", unit="s")
+    longest_moving: float = tuned(0.15, "Longest stretch that the state of a moving hub is fitted to.", unit="s")
+    fewest: int = tuned(3, "Shortest stretch.", unit="samples")
+    iterations: int = tuned(3, "Gauss–Newton steps.")
+    difference: float = tuned(1e-4, "Step of the differences, in unit-energy coordinates.")
+    gain: float = tuned(0.999, "A step that leaves more than this share of the cost ends the iterations.")
+    modes: int = tuned(4, "Modes of the beam that may vibrate.")
+    faster_modes: float = tuned(0.3, "Expected size of the faster modes over that of the first.")
+    least_size: float = tuned(1e-12, "Smallest expected size of a mode.", "guards a division")
+    least_seen: float = tuned(1e-4, "Directions that the stretch shows less than this, over the best shown one, stay at rest.")
+
+
+@dataclass(frozen=True)
+class ProcessNoise:
+    """Standard deviations of the torque noise that observers assume, over the rms torque of the drive."""
+
+    calibration: tuple[float, ...] = tuned((0.03, 0.003, 0.0003), "Levels that a calibration goes through before its own.")
+    calibration_more: tuple[float, ...] = tuned((0.3, 0.03, 0.003, 0.0003), "Levels of one for which those are too few.")
+    calibration_last: tuple[float, ...] = tuned((0.0003,), "Levels of one that continues near the noise.")
+    brief: tuple[float, ...] = tuned((0.003,), "Level of a brief calibration.")
+    refinement: tuple[float, ...] = tuned((3e-3, 3e-4, 3e-5), "Levels of the final Gauss–Newton steps.")
+    refinement_aside: tuple[float, ...] = tuned((3e-3, 3e-5), "Levels of those that begin to either side.")
+    screening: tuple[float, ...] = tuned(
+        (0.01, 0.003, 0.001, 0.0003),
+        "Candidates are screened at the first level at which errors exceed `screening.visible`: more feedback hides a small "
+        "steady torque, less makes the errors of a model that is far off rough.",
+    )
+    windows: tuple[float, ...] = tuned((1e-4, 2e-3, 2e-2), "Levels of the replays from whose states windows start.")
+    windows_brief: tuple[float, ...] = tuned((2e-3, 2e-2), "Those of a brief error.")
+    detection: float = tuned(0.01, "Level of the innovations from which detectable sizes are estimated.")
+
+
+@dataclass(frozen=True)
+class Observers:
+    """Steady-state Kalman gains of the corrected replay."""
+
+    hub_share: float = tuned(0.05, "Energy that process noise gives every coordinate, over what it gives the hub.")
+    doublings: int = tuned(
+        14, "Steps of the doubling iteration for the Riccati equation.", "2**14 samples reach the steady state"
+    )
+    unstable: float = tuned(1.0001, "A gain whose closed loop grows by more than this per sample is dropped.")
+    held_drift: float = tuned(0.05, "Drift of a held angle per sample, over the noise of its sensor, at full torque noise.")
+    size_steps: float = tuned(64.0, "Factor between the torque sizes that the drift of a held angle distinguishes.")
+    least_process: float = tuned(1e-12, "Process variance of states beyond positions and speeds.", "keeps the covariance regular")
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """Scales, priors and difference steps of what a calibration moves."""
+
+    widest: float = tuned(
+        30.0, "Prior of an unbounded value, in typical sizes, so that a direction without information stays put."
+    )
+    positive: float = tuned(3.0, "Prior of the logarithm of a value without a null, such as a time.")
+    least_step_constant: float = tuned(1e-3, "Narrowest difference of a constant's logarithm.")
+    least_step_effect: float = tuned(1e-2, "Narrowest difference of an effect's value, over its size.")
+    least_size: float = tuned(0.3, "Size of an effect below which differences shrink no further, in typical sizes.")
+    widest_step: float = tuned(0.3, "Widest difference, over a constant's prior or an effect's size.")
+
+
+@dataclass(frozen=True)
+class LeastSquares:
+    """Levenberg–Marquardt with differences as wide as the model is off."""
+
+    first_damping: float = tuned(1e-3, "Damping at the start.", "customary (Marquardt, J. SIAM 11 (1963) 431)")
+    less_damping: float = tuned(0.2, "Factor of the damping after a step that helps.")
+    least_damping: float = tuned(1e-7, "Smallest damping.")
+    more_damping: float = tuned(10.0, "Factor of the damping after a step that fails.", "customary (Marquardt 1963)")
+    least_helpful: float = tuned(1e-3, "Damping below which a step is that of Gauss and Newton.")
+    largest_step: float = tuned(3.0, "Largest change of a scaled value in a step.")
+    steps: int = tuned(4, "Steps along one Jacobian, which each corrects for the next.")
+    worthwhile: float = tuned(0.01, "Relative decrease of the cost below which a Jacobian is computed anew.")
+    trials: int = tuned(5, "Dampings that the first step along a Jacobian tries.")
+    shrinks: float = tuned(0.7, "Differences that shrank by less than this factor give the same Jacobian again.")
+    narrow: float = tuned(8.0, "Factor by which differences are narrower in the last pass.")
+    largest_residual: float = tuned(1e4, "Largest residual, in standard deviations: one bad moment must not rule a fit.")
+
+
+@dataclass(frozen=True)
+class Calibrating:
+    """Passes of a calibration, and when it is restarted."""
+
+    iterations: int = tuned(6, "Jacobians at each level of process noise.")
+    passes: int = tuned(
+        3, "Passes at the arm's own torque noise: the first weighs by errors that it then removes, the last is narrow."
+    )
+    tolerance: float = tuned(1e-2, "Relative decrease of the cost at which a level is left.")
+    final_tolerance: float = tuned(1e-4, "Relative decrease of the cost at which the last pass ends.")
+    last_iterations: int = tuned(2, "Jacobians when only the held-out part is new.")
+    brief_iterations: int = tuned(2, "Jacobians of a brief calibration.")
+    continuations: int = tuned(4, "How often a calibration that stays far off is continued.")
+    memory: float = tuned(0.02, "Time over which the errors of a model that is far off are correlated.", unit="s")
+
+
+@dataclass(frozen=True)
+class Refining:
+    """Final Gauss–Newton steps along weakly observable directions, and the common scale of forces."""
+
+    difference: float = tuned(1e-5, "Step of the differences.")
+    iterations: int = tuned(5, "Gauss–Newton steps at each level.")
+    tolerance: float = tuned(1e-4, "Relative decrease of the cost at which a level is left.")
+    dampings: tuple[float, ...] = tuned((0.0, 1e1, 1e2, 1e3, 1e4), "Dampings tried in turn, over the priors' weight.")
+    aside: float = tuned(0.3, "Distance to either side at which other minima are sought, in priors' standard deviations.")
+    scale_step: float = tuned(0.02, "Step of the logarithm of the common scale.")
+    scale_furthest: float = tuned(0.5, "Furthest that the logarithm of the common scale moves at once.")
+
+
+@dataclass(frozen=True)
+class Intervals:
+    """How 90 % intervals are made."""
+
+    quantile: float = tuned(1.6449, "Two-sided 90 % quantile of the normal distribution.", "the normal distribution")
+    best_model: float = tuned(0.005, "Relative standard deviation that no value beats: no model is more exact.")
+    block: float = tuned(0.25, "Length of the blocks over which residuals may be correlated.", unit="s")
+
+
+@dataclass(frozen=True)
+class Screening:
+    """Ranking of candidates by the change of the residual that they would make."""
+
+    visible: float = tuned(1.5, "Error over noise at which a level of process noise leaves something to explain.")
+    least_explained: float = tuned(0.005, "Least share of the residual that a signature must explain to be fitted.")
+    least_change: float = tuned(1e-12, "A change of the residual below this share is none.", "guards a division")
+    starts_scanned: int = tuned(2, "Starts whose size is scanned.")
+    sizes: tuple[float, ...] = tuned((0.15, 0.4, 0.75, 1.2, 2.5), "Factors of the size that are scanned.")
+    few_starts: int = tuned(2, "Effects with no more starts are tried at small sizes, too.")
+    small: tuple[float, ...] = tuned((0.03, 0.003), "Shares of the first start's size that are tried where starts are few.")
+    linear: float = tuned(0.7, "Share of a secant's promise that counts as proportional growth.")
+    largest_factor: float = tuned(10.0, "Largest factor taken from a secant.")
+    iterations: int = tuned(4, "Jacobians of a candidate's own parameters.")
+    tolerance: float = tuned(1e-3, "Relative decrease of the cost at which a candidate's fit ends.")
+    fine_beam: int = tuned(3, "Elements from which a beam lacks no higher modes.", unit="elements")
+
+
+@dataclass(frozen=True)
+class Proposing:
+    """Candidates that are calibrated in full, and the constants that they start from."""
+
+    finalists: int = tuned(4, "Candidates calibrated in full in each round.")
+    least_change: float = tuned(0.97, "They must lower the cost of the screening to this share.")
+    least_of_best: float = tuned(0.3, "And by this share of what the best one does.")
+    near_best: float = tuned(0.6, "Those that do this share of what the best one does go first.")
+    refit_helps: float = tuned(0.2, "Constants that leave less than this share of the excess are trusted as a start.")
+    refit_fails: float = tuned(0.7, "Constants that leave more than this share of the excess are not.")
+    biased: float = tuned(1.0, "Constants that moved by more priors' standard deviations are reset before brief calibrations.")
+    briefly_better: float = tuned(0.9, "Share of the control's excess that an effect may leave after a brief calibration.")
+    most_brief: int = tuned(4, "Effects calibrated in full after brief calibrations.")
+    too_large: float = tuned(1.03, "A brief calibration that leaves this multiple of the control's error began too large.")
+    least_offset: float = tuned(0.01, "Share of the residual that the companion effect must explain to be fitted along.")
+
+
+@dataclass(frozen=True)
+class Selecting:
+    """Thresholds by which effects are accepted, exchanged and dropped (`ThresholdCriteria`)."""
+
+    most_effects: int = tuned(3, "Effects that a diagnosis names at most.")
+    least_gain: float = tuned(0.25, "Least share of the excess that an effect must remove.")
+    least_gain_far_off: float = tuned(0.5, "The same where the model stays far off, in windows and in the free run.")
+    least_total_gain: float = tuned(0.7, "Least share of the excess that all accepted effects must remove.")
+    least_total_gain_near: float = tuned(0.95, "The same in windows where the model ends near the noise.")
+    least_removed: float = tuned(0.2, "Excess that an effect must remove at least.")
+    least_of_first: float = tuned(1e-3, "The same, as a share of what the refitted constants leave.")
+    same_gain: float = tuned(
+        0.03, "Effects are equivalent if what they leave differs by less than this share of what they remove."
+    )
+    same_excess: float = tuned(0.1, "And by less than one of them leaves, or this excess, whichever is more.")
+    refit_needed: float = tuned(1.5, "Constants were wrong if the nominal excess is this multiple of the refitted one.")
+
+
+@dataclass(frozen=True)
+class DetectionLimits:
+    """The size up to which an absent effect would go undetected."""
+
+    step_down: float = tuned(100.0, "Largest factor by which a size is lowered at once.")
+    step_up: float = tuned(3.0, "Largest factor by which a size is raised at once.")
+    steps: int = tuned(4, "Steps by the innovations.")
+    window_steps: int = tuned(2, "Steps by windows where only they show the effect.")
+    in_windows: float = tuned(
+        25.0, "Rise of the error in windows over that of the innovations, in which feedback hides an effect."
+    )
+    stays: float = tuned(0.7, "A smaller size that leaves more than this share of a change hardly lowers it.")
+    least_change: float = tuned(1e-12, "A change that counts as none.", "guards a division")
+    close: float = tuned(0.2, "Change of the size's logarithm that ends the steps.")
+    most_starts: int = tuned(3, "Starts that are tried: of a periodic effect, from its slowest to its fastest.")
+
+
+@dataclass(frozen=True)
+class Explaining:
+    """Errors by regime and band, and torque estimated from recordings."""
+
+    fast: float = tuned(0.1, "The hub moves fast above this share of its largest speed.")
+    smoothing: float = tuned(0.02, "Half width of the mean by which regimes are told.", unit="s")
+    still: float = tuned(3.0, "The hub is stuck below this multiple of the smoothed speed's noise.")
+    bands: tuple[float, ...] = tuned((0.0, 2.0, 5.0, 15.0, 50.0), "Edges of the frequency bands.", unit="Hz")
+    torque_step: float = tuned(0.05, "Change of the hub's torque per sample that the smoother expects, over the drive's rms.")
+    least_noise: float = tuned(1e-6, "Noise on every state over that of the torque, so that all stay open to correction.")
+    settling: float = tuned(0.2, "Time at both ends in which the smoother still depends on its start.", unit="s")
+    rank: float = tuned(1e-14, "Relative singular value below which the smoother's covariance is singular.", "machine precision")
+    moving: float = tuned(0.01, "The hub counts as moving above this share of its largest speed.")
+    slowest: float = tuned(1e-6, "Speed at which a law's curve begins.", unit="rad/s")
+    bins: int = tuned(32, "Bins of a curve.")
+    fewest_in_bin: int = tuned(12, "Samples in a bin.", unit="samples")
+    line_points: int = tuned(200, "Points of a law's line.")
+    most_points: int = tuned(1500, "Samples drawn.")
+    quartiles: tuple[float, float] = tuned((25.0, 75.0), "Band that holds the middle half of a bin.", unit="%")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Every tuned number of the method, by stage.
+
+    Example:
+        >>> from dataclasses import replace
+        >>> settings = Settings()
+        >>> settings.errors.far_off
+        3.0
+        >>> replace(settings, errors=replace(settings.errors, far_off=4.0)).errors.far_off
+        4.0
+    """
+
+    errors: ErrorScale = ErrorScale()
+    preparation: Preparation = Preparation()
+    reference: ReferenceSizes = ReferenceSizes()
+    initial_states: InitialStates = InitialStates()
+    process_noise: ProcessNoise = ProcessNoise()
+    observers: Observers = Observers()
+    parameters: Parameters = Parameters()
+    least_squares: LeastSquares = LeastSquares()
+    calibrating: Calibrating = Calibrating()
+    refining: Refining = Refining()
+    intervals: Intervals = Intervals()
+    screening: Screening = Screening()
+    proposing: Proposing = Proposing()
+    selecting: Selecting = Selecting()
+    detection: DetectionLimits = DetectionLimits()
+    explaining: Explaining = Explaining()
+
+    def numbers(self) -> Iterator[Number]:
+        """Yield every number with its stage, meaning and origin."""
+        for stage in dataclasses.fields(self):
+            values = getattr(self, stage.name)
+            for number in dataclasses.fields(values):
+                facts = number.metadata
+                value = getattr(values, number.name)
+                yield Number(stage.name, number.name, value, facts["unit"], facts["meaning"], facts["found"])
+
+    def as_json(self) -> dict[str, dict[str, Any]]:
+        """Convert to plain data: the value of each number by stage and name."""
+        return {stage: dict(values) for stage, values in dataclasses.asdict(self).items()}
+
+
+#: The settings of every published result.
+SETTINGS = Settings()
