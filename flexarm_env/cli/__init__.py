@@ -16,7 +16,7 @@ def main() -> None:
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Run a command line; return its exit code. Set FLEXARM_TRACEBACK=1 to see where an error comes from."""
+    """Run a command line; return its exit code. With FLEXARM_TRACEBACK=1 errors show their traceback."""
     from flexarm_env.errors import InputError
 
     for stream in (sys.stdout, sys.stderr):
@@ -49,13 +49,13 @@ def _call(arguments: Sequence[str]) -> int:
     from flexarm_env.cli.app import app
 
     code = app(args=list(arguments), prog_name="flexarm", standalone_mode=False)
-    if code == STOPPED:  # Typer took Ctrl-C, and says nothing
+    if code == STOPPED:  # Typer caught Ctrl-C and printed nothing
         return complain("stopped", STOPPED)
     return code if isinstance(code, int) else DONE
 
 
 def _other(error: Exception) -> int:
-    """Complain of a usage error, an interruption that Typer caught, or a fault of the program's own."""
+    """Report a usage error, an interruption that Typer caught, or a fault of the program itself."""
     if type(error).__name__ == "Abort":
         return complain("stopped", STOPPED)
     if type(error).__name__ == "NoArgsIsHelpError":

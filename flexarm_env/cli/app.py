@@ -1,4 +1,4 @@
-"""The commands, and what each takes."""
+"""The commands and their arguments."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def diagnose(
     jobs: Annotated[int, typer.Option(min=1, max=256, help="Processes to use.")] = 2,
     json: Json = None,
 ) -> None:
-    """Tell whether constants are wrong or an effect is missing, which one, how sure, and what would settle it."""
+    """Find out whether constants are wrong or an effect is missing: which one, how sure, and the run to record next."""
     given = arguments.Given(recordings, arm, columns, effects)
     model, runs = given.load(json, report, save, next_run)
     from flexarm_env.cli.answers import hand_out
@@ -208,7 +208,7 @@ def thesis(
 @app.command()
 def lab(
     recordings: Annotated[
-        list[Path] | None, typer.Argument(metavar="[RECORDING…]", help="CSV files, or folders of them.", show_default=False)
+        list[Path] | None, typer.Argument(metavar="[RECORDING…]", help="CSV or .mat files, or folders.", show_default=False)
     ] = None,
     arm: ArmName = "thesis-fem",
     columns: Columns = None,

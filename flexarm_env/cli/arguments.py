@@ -104,6 +104,6 @@ def show_notes(recordings: Sequence[Recording]) -> None:
 
 
 def hint_at_save(save: Path | None) -> None:
-    """Say how the arm is kept, where it was not saved."""
+    """Point to --save where the arm was not saved."""
     if save is None:
         typer.echo("Not saved; --save ARM.toml keeps the arm.", err=True)

@@ -18,7 +18,7 @@ _FIELDS = ("equation", "looks_like", "confused_with", "source", "needs")
 
 
 def show(name: str | None, json: Path | None) -> None:
-    """Print the catalogue, or one effect; write it as JSON if asked."""
+    """Print the catalogue, or one effect; write it as JSON where a file is named."""
     known = catalogue()
     if name is not None and ".py:" in name:
         effect = load_effect(name)

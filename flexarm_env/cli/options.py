@@ -8,9 +8,10 @@ from typing import Annotated
 import typer
 
 Recordings = Annotated[
-    list[Path], typer.Argument(metavar="RECORDING…", help="CSV files, or folders of them.", show_default=False)
+    list[Path], typer.Argument(metavar="RECORDING…", help="CSV or .mat files, or folders of them.", show_default=False)
 ]
-ArmName = Annotated[str, typer.Option("--arm", metavar="ARM", help="Arm file, or a shipped arm: thesis, thesis-fem.")]
+_ARMS = "thesis, thesis-fem, cu-flexible, cu-rigid, emps"
+ArmName = Annotated[str, typer.Option("--arm", metavar="ARM", help=f"Arm file, or a shipped arm: {_ARMS}.")]
 Columns = Annotated[
     Path | None,
     typer.Option(metavar="FILE.toml", help="How foreign recordings name their columns: a \\[columns] table."),
@@ -22,4 +23,4 @@ Effects = Annotated[
 Json = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for stdout.")]
 Report = Annotated[Path | None, typer.Option(metavar="FILE.html", help="Write a page with figures.")]
 Save = Annotated[Path | None, typer.Option(metavar="ARM.toml", help="Write the arm that results.")]
-Seed = Annotated[int, typer.Option(min=0, help="Of everything random.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of all random draws.")]

@@ -12,7 +12,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.cli.answers import hand_out
 from flexarm_env.cli.arguments import show_notes
 from flexarm_env.errors import InputError
-from flexarm_env.experiments.simulate import EXPERIMENTS
+from flexarm_env.experiments.plans import EXPERIMENTS
 from flexarm_env.pictures import words
 from flexarm_env.recordings.recording import Recording
 from flexarm_env.terminal import tables

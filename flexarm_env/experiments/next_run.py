@@ -1,4 +1,4 @@
-"""The run to record next: the one on which the hypotheses that the data leave open differ most."""
+"""The run to record next: the input on which the hypotheses that the data leave open differ most."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ DURATION = 10.0
 SHARES, SEEDS = (0.15, 0.3, 0.6, 0.9), (11, 12)
 #: Frequencies [Hz] between which a chirp rises, and for how long [s] a ramp climbs.
 CHIRP, RAMP_TIME = (0.3, 15.0), 4.0
-#: A difference of this many standard deviations of the noise per sample tells two hypotheses apart at once.
-TELLS = 1.0
+#: A difference of this many standard deviations of the noise per sample separates two hypotheses in one run.
+DECISIVE = 1.0
 
 
 @dataclass(frozen=True)
 class NextRun:
-    """An input that is worth playing.
+    """An input to apply to the machine.
 
     Attributes:
-        name: what it is, in words.
-        separates: the effects between which it decides; empty if the data were too poor to say anything.
+        name: the input in words.
+        separates: the effects between which it decides; empty where the data were insufficient for a diagnosis.
         difference: rms between the two hypotheses that are closest on it, over the noise.
         time: (samples,) [s].
         command: (samples,) [A or V].
@@ -49,36 +49,37 @@ class NextRun:
 
     @property
     def why(self) -> str:
-        """One sentence for a person."""
+        """The reason to record it, in one sentence."""
         if not self.separates:
             return f"record {self.name}: it breaks away both ways and comes to rest"
-        tells = "it decides" if self.difference >= TELLS else "it is the best of those tried, and it takes several runs to decide"
-        return f"record {self.name}: {tells} between {' and '.join(self.separates)} ({self.difference:.2g} × the noise apart)"
+        one_run = self.difference >= DECISIVE
+        verdict = "it decides" if one_run else "it is the best of those tried, and it takes several runs to decide"
+        return f"record {self.name}: {verdict} between {' and '.join(self.separates)} ({self.difference:.2g} × the noise apart)"
 
     def as_json(self) -> dict[str, Any]:
-        """Return what it is and why, without its samples."""
+        """Give the input and the reason for it, without its samples."""
         return {"input": self.name, "separates": list(self.separates), "difference": self.difference, "why": self.why}
 
     def as_csv(self) -> str:
-        """Return the input as the text of a recording without signals, to be played."""
+        """Write the input as the text of a recording without signals, which `simulate` plays."""
         rows = "".join(f"{float(t)!r},{float(c)!r}\n" for t, c in zip(self.time, self.command, strict=True))
         return f"time [s],{self.input_kind} [{INPUTS[self.input_kind]}]\n{rows}"
 
 
 def propose(hypotheses: Mapping[str, Arm], interval: float) -> NextRun | None:
-    """Return the input on which the closest two hypotheses differ most.
+    """Find the input on which the closest two hypotheses differ most.
 
-    That is T-optimality (Atkinson and Fedorov, Biometrika 62 (1975) 57), over a list of inputs.
+    This is T-optimality (Atkinson and Fedorov, Biometrika 62 (1975) 57), over a list of inputs.
 
     Args:
         hypotheses: fitted arms that explain the recordings equally well, by effect; with one there is nothing to decide, and
-            the experiment that shows most of any arm is returned.
+            the first experiment is returned, a square wave under PD where the arm measures its angle.
         interval: sampling time [s].
     """
     arms = list(hypotheses.values())
     rate = 1.0 / interval
     best: NextRun | None = None
-    for name, command in _inputs(arms[0], rate):
+    for name, command in _candidate_inputs(arms[0], rate):
         played = Recording.from_arrays(name, np.arange(len(command)) / rate, arms[0].input, command, {}, measured=False)
         readings = [_readings(arm, played) for arm in arms]
         if not all(np.isfinite(r).all() for r in readings):
@@ -92,14 +93,14 @@ def propose(hypotheses: Mapping[str, Arm], interval: float) -> NextRun | None:
 
 
 def _readings(arm: Arm, played: Recording) -> Floats:
-    """Return readings (samples, signals) over their noise."""
+    """Simulate the readings (samples, signals), in standard deviations of their noise."""
     run = simulate(arm, played, noise=False)
     noise = [reading_noise(s) or 1.0 for s in arm.sensors.values()]
     return np.stack([run.signals[s] for s in arm.signals], axis=1) / np.array(noise)
 
 
-def _inputs(arm: Arm, rate: float) -> list[tuple[str, Floats]]:
-    """Return inputs to try, each a name and commands (samples,) within the drive's limit."""
+def _candidate_inputs(arm: Arm, rate: float) -> list[tuple[str, Floats]]:
+    """List the inputs to try, each a name and commands (samples,) within the drive's limit."""
     time = np.arange(round(DURATION * rate)) / rate
     found = []
     for experiment, words in (("square", "a square wave under PD"), ("sweep", "a slow swing with tones"), ("pulse", "pulses")):

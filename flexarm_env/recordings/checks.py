@@ -1,4 +1,4 @@
-"""What arrays and conditions must be to make a recording."""
+"""Checks of the arrays and conditions of a recording."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from flexarm_env.errors import InputError
 
 Floats = NDArray[np.float64]
 
-#: No arm reads or is sent more than this, in SI.
+#: Beyond any reading or command of an arm, in SI.
 LARGEST_READING = 1e7
-#: A step of time is no longer than so many median steps, since nothing is known of what was sent meanwhile, and the median
-#: no shorter than this [s].
+#: A step of time is no longer than so many median steps, since the commands meanwhile are unknown, and the median no shorter
+#: than this [s].
 LONGEST_STEP, SHORTEST_STEP = 10_000, 1e-7
 
 
@@ -35,7 +35,15 @@ def as_vector(name: str, values: ArrayLike) -> Floats:
 
 
 def check_samples(arrays: Mapping[str, Floats], lines: Sequence[int]) -> None:
-    """Raise InputError at the first number that is not finite, or step of time that does not go up."""
+    """Check that numbers are finite and plausible and that time rises.
+
+    Args:
+        arrays: (n,) by column name, in SI.
+        lines: the line of each sample in its file, for messages; empty where there is none.
+
+    Raises:
+        InputError: at the first number or step of time that is not.
+    """
 
     def place(sample: int) -> str:
         return f"row {lines[sample]}" if lines else f"sample {sample + 1}"
@@ -61,6 +69,7 @@ def check_samples(arrays: Mapping[str, Floats], lines: Sequence[int]) -> None:
 
 
 def _check_steps(steps: Floats, place: Callable[[int], str]) -> None:
+    """Check steps of time (n - 1,) [s]."""
     if not steps.size:
         return
     usual = float(np.median(steps))
@@ -75,7 +84,11 @@ def _check_steps(steps: Floats, place: Callable[[int], str]) -> None:
 
 
 def check_conditions(conditions: Mapping[str, float]) -> None:
-    """Raise InputError for a condition whose name or value no header can hold."""
+    """Check that a header can hold the conditions.
+
+    Raises:
+        InputError: for a name that is none, or a value that is not finite, or a negative payload.
+    """
     for name, value in conditions.items():
         if not name.isidentifier() or not name.isascii():
             raise InputError(f"condition {name!r}: write its name in letters, digits and _")

@@ -1,4 +1,4 @@
-"""Recordings: what went into an arm and what its sensors said, in SI, read from a file and written to one."""
+"""Recordings: the command of an arm and the readings of its sensors, in SI, read from a file and written to one."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import write_whole
 from flexarm_env.parameters import INPUTS
 from flexarm_env.recordings.checks import as_vector, check_conditions, check_samples
-from flexarm_env.recordings.columns import UNITS, ColumnMap, check_calibration, check_names, load_columns, si_factor
+from flexarm_env.recordings.column_maps import load_columns
+from flexarm_env.recordings.columns import UNITS, ColumnMap, check_calibration, check_names
 from flexarm_env.recordings.conditions import CONDITIONS
 from flexarm_env.recordings.files import PathLike, files_of, read_bytes
 from flexarm_env.recordings.formats.catalogue import format_of
 from flexarm_env.recordings.messages import file_error
-from flexarm_env.recordings.table import Table
 from flexarm_env.sensors import known_sensors
 
 Floats = NDArray[np.float64]
@@ -39,10 +39,10 @@ class Recording(Shown):
         name: for tables and plots.
         time: (n,) [s], rising from 0.
         input_kind: "current" or "voltage".
-        command: (n,) [A or V], what the drive was commanded.
+        command: (n,) [A or V], the commanded input of the drive.
         signals: (n,) each, by name: arm_angle [rad], motor_speed [rad/s], strain_mid [V], strain_base [V],
             tip_deflection [m]; none in commands that are only to be played.
-        reference: (n,) [rad] what the arm angle was to follow, or None.
+        reference: (n,) [rad], the commanded arm angle, or None.
         conditions: known conditions in SI, such as payload [kg]; `start` [s] is how long the run had gone on
             before the first sample.
         source: the path it was read from; "" if from none.
@@ -98,7 +98,7 @@ class Recording(Shown):
         conditions: Mapping[str, float] | None = None,
         measured: bool = True,
     ) -> Recording:
-        """Return a recording of copies of (n,) arrays in SI, checked as a file is.
+        """Make a recording of copies of (n,) arrays in SI, checked as a file is.
 
         Args:
             name: for tables and plots.
@@ -113,6 +113,14 @@ class Recording(Shown):
         Raises:
             InputError: for an unknown name, lengths that differ, fewer than two samples, numbers that are not
                 finite, or time that does not rise.
+
+        Examples:
+            >>> import numpy as np
+            >>> from flexarm_env import Recording
+            >>> time = np.arange(0.0, 1.0, 0.01)
+            >>> run = Recording.from_arrays("run", time, "current", np.sin(time), {"arm_angle": 1.0 - np.cos(time)})
+            >>> run
+            Recording('run': 100 samples, 0.99 s at 100 Hz, current -> arm_angle)
         """
         if input_kind not in INPUTS:
             raise InputError(f"{name}: unknown input {input_kind!r}{did_you_mean(input_kind, INPUTS)}")
@@ -136,7 +144,7 @@ class Recording(Shown):
         calibration: Mapping[str, float] | None = None,
         measured: bool = True,
     ) -> Recording:
-        """Return the recording in a CSV file, or by a column map in any text table or .mat file.
+        r"""Read a recording from a CSV file, or by a column map from any text table or .mat file.
 
         Args:
             path: the file. Its time is shifted to start at 0.
@@ -146,6 +154,27 @@ class Recording(Shown):
 
         Raises:
             InputError: for anything that is not such a file: one line with file, row and column.
+
+        Examples:
+            >>> from pathlib import Path
+            >>> from flexarm_env import Recording
+            >>> _ = Path("plain.csv").write_text("time [ms],current [mA],arm_angle [deg]\n0,0,0\n10,500,0\n20,500,9\n")
+            >>> run = Recording.read("plain.csv")
+            >>> run.time.tolist(), run.command.tolist()
+            ([0.0, 0.01, 0.02], [0.0, 0.5, 0.5])
+
+            A file of a logger, by its columns:
+
+            >>> _ = Path("logger.txt").write_text("t;I;encoder\n0;0;0\n10;500;0\n20;500;-9\n")
+            >>> columns = {
+            ...     "delimiter": ";",
+            ...     "time": {"column": "t", "unit": "ms"},
+            ...     "current": {"column": "I", "unit": "mA"},
+            ...     "arm_angle": {"column": "encoder", "unit": "deg", "sign": -1},
+            ... }
+            >>> other = Recording.read("logger.txt", columns)
+            >>> bool((other.signals["arm_angle"] == run.signals["arm_angle"]).all())
+            True
         """
         layout = None if columns is None else load_columns(columns, measured)
         gains = dict(calibration or {})
@@ -154,8 +183,7 @@ class Recording(Shown):
         try:
             content = read_bytes(path)
             table = format_of(path).table(content, layout, measured)
-            arrays = {name: _si(name, table, gains) for name in table.values}
-            recording = _recording(path.stem, arrays, table.conditions, table.lines, measured)
+            recording = _recording(path.stem, table.in_si(gains), table.conditions, table.lines, measured)
         except InputError as error:
             raise file_error(path, error) from None
         return replace(recording, source=str(path), sha256=hashlib.sha256(content).hexdigest())
@@ -168,12 +196,21 @@ class Recording(Shown):
         calibration: Mapping[str, float] | None = None,
         measured: bool = True,
     ) -> list[Recording]:
-        """Return the recordings in files and folders; a folder stands for its CSV files, sorted by name.
+        """Read the recordings in files and folders; a folder stands for its CSV and .mat files, sorted by name.
 
         Where names would come twice, they have the folder's name before them. Arguments as `read`.
 
         Raises:
-            InputError: as `read`; for a folder without CSV files; for a file named twice.
+            InputError: as `read`; for a folder without recordings; for a file named twice.
+
+        Examples:
+            >>> from pathlib import Path
+            >>> from flexarm_env import Arm, Recording, simulate
+            >>> Path("runs").mkdir()
+            >>> for name in ("pulse", "square"):
+            ...     simulate(Arm.load("thesis"), name, duration=1.0, rate=100.0).write(f"runs/{name}.csv")
+            >>> [run.name for run in Recording.read_all("runs")]
+            ['pulse', 'square']
         """
         files = files_of([paths] if isinstance(paths, (str, os.PathLike)) else paths)
         layout = None if columns is None else load_columns(columns, measured)
@@ -185,6 +222,19 @@ class Recording(Shown):
 
         Raises:
             InputError: if the file cannot be written.
+
+        Examples:
+            >>> from pathlib import Path
+            >>> from flexarm_env import Recording
+            >>> signals = {"arm_angle": [0, 0.1]}
+            >>> run = Recording.from_arrays("run", [0, 0.5], "voltage", [0, 1], signals, conditions={"payload": 0.3})
+            >>> run.write("run.csv")
+            >>> print(Path("run.csv").read_text())
+            # payload = 0.3 kg
+            time [s],voltage [V],arm_angle [rad]
+            0.0,0.0,0.0
+            0.5,1.0,0.1
+            <BLANKLINE>
         """
         columns = {"time": self.time, self.input_kind: self.command}
         columns |= {name: self.signals[name] for name in known_sensors() if name in self.signals}
@@ -196,12 +246,19 @@ class Recording(Shown):
         write_whole(Path(path), "\n".join([*remarks, header, *map(",".join, rows), ""]))
 
     def part(self, start: float = 0.0, stop: float | None = None) -> Recording:
-        """Return the samples with start <= time < stop [s]; without `stop`, up to the end.
+        """Cut out the samples with start <= time < stop [s]; without `stop`, up to the end.
 
         Its time starts at 0 again, and `conditions["start"]` says how long the run had gone on before.
 
         Raises:
             InputError: if fewer than two samples lie there.
+
+        Examples:
+            >>> from flexarm_env import Recording
+            >>> run = Recording.from_arrays("run", [0, 1, 2, 3], "voltage", [0, 1, 1, 0], {"arm_angle": [0, 0, 1, 2]})
+            >>> part = run.part(1.0, 3.0)
+            >>> part.time.tolist(), part.command.tolist(), part.conditions
+            ([0.0, 1.0], [1.0, 1.0], {'start': 1.0})
         """
         # A boundary such as 0.3 must find the sample at 0.30000000000000004.
         slack = 1e-6 * self.sample_time
@@ -221,21 +278,17 @@ class Recording(Shown):
         )
 
 
-def _si(name: str, table: Table, calibration: Mapping[str, float]) -> Floats:
-    """Return a column in SI; time from its first sample on, taken before scaling so that nothing is lost."""
-    factor = si_factor(name, table.sources[name], calibration)
-    values = table.values[name]
-    with np.errstate(over="ignore", invalid="ignore"):  # what overflows is reported with its row
-        return (values - values[0] if name == "time" else values) * factor
-
-
 def _recording(
     name: str, arrays: dict[str, Floats], conditions: dict[str, float], lines: Sequence[int], measured: bool = True
 ) -> Recording:
-    """Return a recording of (n,) arrays in SI, by column name, after checking them.
+    """Check (n,) arrays in SI, by column name, and make a recording of them.
 
-    `lines` has the line of each sample in its file, for messages; it is empty where there is none. `measured` tells
-    whether there must be a signal.
+    Args:
+        name: for tables and plots.
+        arrays: by column name.
+        conditions: in SI.
+        lines: the line of each sample in its file, for messages; empty where there is none.
+        measured: whether there must be a signal.
     """
     kind = check_names(tuple(arrays), measured)
     lengths = {column: len(values) for column, values in arrays.items()}
@@ -259,7 +312,7 @@ def _recording(
 
 
 def with_distinct_names(recordings: Sequence[Recording]) -> list[Recording]:
-    """Return recordings whose names differ: by their folder, else by their path."""
+    """Rename recordings so that their names differ: by their folder, else by their path."""
     sources = [Path(recording.source) for recording in recordings]
     for names in (
         [source.stem for source in sources],

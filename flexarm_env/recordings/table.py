@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from flexarm_env.recordings.columns import Source
+from flexarm_env.recordings.columns import Source, si_factor
 
 #: Bytes.
 LARGEST_FILE = 256 * 2**20
@@ -31,3 +31,20 @@ class Table:
     sources: dict[str, Source]
     conditions: dict[str, float] = field(default_factory=dict)
     lines: Sequence[int] = ()
+
+    def in_si(self, calibration: Mapping[str, float]) -> dict[str, NDArray[np.float64]]:
+        """Convert the columns to SI.
+
+        Args:
+            calibration: SI per volt, by signal.
+
+        Raises:
+            InputError: for a unit that does not convert.
+        """
+        found = {}
+        for name, values in self.values.items():
+            factor = si_factor(name, self.sources[name], calibration)
+            with np.errstate(over="ignore", invalid="ignore"):  # what overflows is reported with its row
+                # Time counts from its first sample, subtracted before scaling so that no digit is lost.
+                found[name] = (values - values[0] if name == "time" else values) * factor
+        return found

@@ -1,4 +1,4 @@
-"""What the commands read: arms, effects of a person's own, recordings."""
+"""Effects of the user's own, and recordings that fit an arm."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from flexarm_env.effects import Catalogue, catalogue
 from flexarm_env.effects.catalogue import load_effect
 from flexarm_env.errors import InputError
 from flexarm_env.recordings.arm_columns import layout_of
-from flexarm_env.recordings.columns import CALIBRATED, load_columns
+from flexarm_env.recordings.column_maps import load_columns
+from flexarm_env.recordings.columns import CALIBRATED
 from flexarm_env.recordings.files import files_of
 from flexarm_env.recordings.recording import Recording, with_distinct_names
 
 
 def known_effects(specs: Sequence[str]) -> Catalogue:
-    """Return the catalogue with the effects of "FILE.py:Name"."""
+    """Extend the catalogue by the effects of "FILE.py:Name"."""
     return catalogue().extended(*map(load_effect, specs)) if specs else catalogue()
 
 
@@ -54,7 +55,7 @@ def _read(arm: Arm, file: Path, measured: bool) -> Recording:
 
 
 def calibration(arm: Arm) -> dict[str, float]:
-    """Return the quantity per volt of each signal for which the arm file states one."""
+    """List the quantity per volt of each signal for which the arm file states one."""
     return {s: table["per_volt"] for s, table in arm.sensors.items() if table["per_volt"] != 0.0 and s in CALIBRATED}
 
 

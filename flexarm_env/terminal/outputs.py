@@ -18,12 +18,12 @@ STDOUT = Path("-")
 
 
 def check_places(json: Path | None, *others: Path | None, read: Iterable[Path] = ()) -> None:
-    """Refuse places that cannot be written, before an hour's work is done.
+    """Refuse places that cannot be written, before the work begins.
 
     Args:
-        json: for the JSON, which alone may go to stdout ("-").
-        others: for whatever else is written.
-        read: files and folders that are read, none of which may be written over.
+        json: for the JSON; only it may go to stdout ("-").
+        others: for other files.
+        read: files and folders that are read and must not be overwritten.
 
     Raises:
         InputError: for a folder that is not there or not writable, a place that holds no file, or one that is used twice.
@@ -65,7 +65,7 @@ def need_lab() -> None:
 
 
 def write_json(path: Path | None, content: Mapping[str, Any]) -> None:
-    """Write a result as JSON to a file, or to stdout for "-"; numbers that are none become null."""
+    """Write a result as JSON to a file, or to stdout for "-"; numbers that are not finite become null."""
     if path is None:
         return
     text = json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
@@ -94,6 +94,7 @@ def discard_stdout() -> None:
 
 
 def _plain(value: Any) -> Any:
+    """Convert a value to what JSON can hold."""
     if isinstance(value, Mapping):
         return {str(key): _plain(entry) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):

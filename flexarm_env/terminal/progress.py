@@ -1,4 +1,4 @@
-"""A progress bar on stderr, for a person who sits before it."""
+"""A progress bar on stderr, where stderr is a terminal."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Progress = Callable[[float, str], None]
 
 @contextmanager
 def progress(title: str) -> Iterator[Progress | None]:
-    """Show a bar while the block runs, and give the function that moves it; None where stderr is no terminal."""
+    """Show a bar while the block runs; yield the function that moves it, or None where stderr is no terminal."""
     if not sys.stderr.isatty():
         yield None
         return

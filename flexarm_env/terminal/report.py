@@ -1,4 +1,4 @@
-"""The page of a comparison or a diagnosis, with all that it needs worked out."""
+"""The page of a comparison or a diagnosis, with the replays and curves on it."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ def write_report(
     Args:
         path: of the file.
         recordings: in the order of the comparison's replays.
-        before: the arm as it came.
+        before: comparison of the arm as given.
         diagnosis: of the same recordings, if there is one.
-        provenance: how to redo it.
-        progress: called with the share done and what is being done.
+        provenance: facts by which the result can be redone.
+        progress: called with the share done and the name of the step.
 
     Raises:
         InputError: if the file cannot be written.
@@ -45,25 +45,25 @@ def report(
     provenance: Mapping[str, Any],
     progress: Progress | None = None,
 ) -> str:
-    """Return the page's HTML; arguments as those of `write_report`."""
+    """Make the page's HTML; arguments as those of `write_report`."""
     from flexarm_env.pictures.page import Findings, page
 
-    say = progress or (lambda done, text: None)
+    report_progress = progress or (lambda done, text: None)
     after, curves, without = None, [], {}
     if diagnosis is not None:
-        say(0.1, "replaying the corrected arm")
+        report_progress(0.1, "replaying the corrected arm")
         after = flexarm_env.compare(diagnosis.arm, recordings)
-        say(0.4, "drawing the effects")
+        report_progress(0.4, "drawing the effects")
         curves = _curves(diagnosis, recordings)
         drawn = {curve.effect for curve in curves}
         arms = {e: after.arm.without_effect(e) for e in diagnosis.effects if e not in drawn and e in after.arm.effects}
         without = {effect: flexarm_env.compare(arm, recordings) for effect, arm in arms.items()}
-    say(0.7, "writing the page")
+    report_progress(0.7, "writing the page")
     return page(Findings(before, recordings, after, diagnosis, curves, without, provenance))
 
 
 def _curves(diagnosis: Diagnosis, recordings: Sequence[Recording]) -> list[EffectCurve]:
-    """Return the curves of accepted effects that act on the hub, or what is left where nothing explains it."""
+    """Estimate the curves of accepted effects that act on the hub, or the unexplained torque where none explains the data."""
     if diagnosis.verdict == "unknown":
         found = [unexplained_curve(diagnosis.arm, driver, recordings) for driver in UNITS]
     else:

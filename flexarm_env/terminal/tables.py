@@ -17,7 +17,7 @@ from flexarm_env.pictures.highlight import error_by_second
 from flexarm_env.pictures.words import NOTHING, PARTS, label_of, number, unit_of
 from flexarm_env.terminal.outputs import discard_stdout
 
-#: Width of a table that goes to a file or a pipe.
+#: Width of a table in a file or a pipe.
 WIDE = 120
 SHORT_RANKING = 8
 #: Seconds that a line of bars shows at most.
@@ -39,7 +39,7 @@ def console(to_stderr: bool = False) -> Console:
 
 
 def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
-    """Return a table whose first column is words and whose others are numbers."""
+    """Make a table with words in its first column and numbers in the others."""
     made = Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False, padding=(0, 2))
     for i, column in enumerate(columns):
         made.add_column(column, justify="left" if i == 0 else "right", header_style="dim", overflow="fold")
@@ -49,7 +49,7 @@ def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> 
 
 
 def text_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
-    """Return a table of words."""
+    """Make a table of words."""
     made = table(title, columns, rows)
     for column in made.columns:
         column.justify = "left"
@@ -64,7 +64,7 @@ def show(out: Console, *parts: RenderableType) -> None:
 
 
 def comparison(result: Comparison) -> list[RenderableType]:
-    """Return the tables of a comparison: by signal, by regime and band, by recording."""
+    """Make the tables of a comparison: by signal, by regime and band, by recording."""
     pooled = [row for row in result.rows if row.recording == "all"]
     signals = words.signals_of(list(result.noise))
     each = {(row.recording, row.signal): row for row in result.rows if row.part == "all"}
@@ -93,7 +93,7 @@ def comparison(result: Comparison) -> list[RenderableType]:
 
 
 def _over_time(result: Comparison) -> dict[str, str]:
-    """Return a line of bars for each recording: its error in each second, all on one scale."""
+    """Draw a line of bars for each recording: its error in each second, all on one scale."""
     errors = error_by_second(result.replays, result.noise)
     largest = max((value for one in errors for value in one if np.isfinite(value)), default=0.0)
     named = zip(result.replays, errors, strict=True)
@@ -101,13 +101,13 @@ def _over_time(result: Comparison) -> dict[str, str]:
 
 
 def _left(made: Table) -> Table:
-    """Put the last column of a table at the left."""
+    """Align the last column of a table left."""
     made.columns[-1].justify = "left"
     return made
 
 
 def _whole(row: Row | None, signal: str, noise: float) -> list[str]:
-    """Return the line of a signal over all recordings."""
+    """Make the row of a signal over all recordings."""
     label, unit = label_of(signal), unit_of(signal)
     errors = [NOTHING] * 3
     if row is not None:
@@ -124,7 +124,7 @@ def _notes(notes: Sequence[str]) -> list[RenderableType]:
 
 
 def steps(steps_: Sequence[tuple[str, float]], free: Sequence[tuple[str, float]]) -> Table:
-    """Return the error after each step."""
+    """Make the table of the error after each step."""
     runs = dict(free) | ({steps_[-1][0]: free[-1][1]} if steps_ and free else {})  # both end with the final model
     largest = max((value for _, value in steps_), default=0.0) or 1.0  # 0 where nothing moves and nothing is modelled to
     rows = [
@@ -135,7 +135,7 @@ def steps(steps_: Sequence[tuple[str, float]], free: Sequence[tuple[str, float]]
 
 
 def estimates(title: str, found: Sequence[Estimate]) -> list[RenderableType]:
-    """Return fitted values with intervals, beside the values that they had."""
+    """Make the table of fitted values with their intervals and their values before."""
     rows = [
         [
             words.constant_name(e),
@@ -150,7 +150,7 @@ def estimates(title: str, found: Sequence[Estimate]) -> list[RenderableType]:
 
 
 def diagnosis(result: Diagnosis) -> list[RenderableType]:
-    """Return verdict, ranking, error and constants."""
+    """Show the verdict, the ranking, the error and the constants of a diagnosis."""
     free = words.steps_of(result.free_run, result.effects)
     constants = [e for e in result.constants.values() if not e.path.startswith("effects.") or e.nominal]
     return [
@@ -178,7 +178,7 @@ def _ranking(result: Diagnosis) -> list[RenderableType]:
 
 
 def addition(result: Addition) -> list[RenderableType]:
-    """Return what an added effect did."""
+    """Show the error and the values after an effect was added."""
     return [
         Text(words.addition(result), style="bold"),
         steps(words.steps_of(result.error, [result.effect]), words.steps_of(result.free_run, [result.effect])),
@@ -187,7 +187,7 @@ def addition(result: Addition) -> list[RenderableType]:
 
 
 def fit(result: Fit) -> list[RenderableType]:
-    """Return what refitting did."""
+    """Show the error and the constants after a refit."""
     return [
         Text(f"Refitted, the held-out error goes {words.arrows(result.error)} × the noise.", style="bold"),
         steps(words.steps_of(result.error), words.steps_of(result.free_run)),

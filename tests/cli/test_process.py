@@ -10,6 +10,7 @@ from pathlib import Path
 from cli_stand_ins import GOOD_ARM
 
 import flexarm_env
+from flexarm_env.arm_file import shipped_arms
 
 
 def process(*arguments, **changes) -> subprocess.CompletedProcess[str]:
@@ -27,6 +28,11 @@ def test_help_is_light():
     # gymnasium, and numpy with it, is there: importing the package registers the environments
     assert modules & {"numba", "scipy", "pint", "plotly", "matplotlib", "pandas", "pygame"} == set()
     assert "diagnose" in run.stdout
+
+
+def test_help_names_every_shipped_arm():
+    text = " ".join(process("compare", "--help", COLUMNS="200").stdout.split())
+    assert set(text.partition("a shipped arm: ")[2].partition(".")[0].split(", ")) == set(shipped_arms())
 
 
 def test_the_command_s_exit_codes_reach_the_shell():

@@ -12,7 +12,8 @@ from flexarm_env.arm import Arm
 from flexarm_env.arm_file import arm_from_table
 from flexarm_env.effects import catalogue
 from flexarm_env.errors import InputError
-from flexarm_env.experiments.simulate import SQUARE_ANGLE, simulate
+from flexarm_env.experiments.plans import SQUARE_ANGLE
+from flexarm_env.experiments.simulate import simulate
 from flexarm_env.recordings.recording import Recording
 from flexarm_env.thesis_drive import DERIVATIVE, PROPORTIONAL
 

@@ -10,7 +10,7 @@ import pytest
 from recording_files import LOGGER, refusal, save
 
 from flexarm_env.errors import InputError
-from flexarm_env.recordings.columns import load_columns
+from flexarm_env.recordings.column_maps import load_columns
 from flexarm_env.recordings.recording import Recording
 
 
