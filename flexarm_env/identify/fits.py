@@ -9,7 +9,6 @@ from joblib import Parallel, delayed
 from flexarm_env.arm import Arm
 from flexarm_env.identify.data import Data
 from flexarm_env.identify.hypothesis import (
-    OFFSET,
     Hypothesis,
     asks_for_offset,
     excess,
@@ -111,12 +110,14 @@ class Fits:
 
     def with_offset(self, found: list[Hypothesis], done: float, share: float) -> list[Hypothesis]:
         """Return the hypotheses with a constant torque beside each: alone it hides what friction explains, and it them."""
-        others = [h for h in found if h.effects != (OFFSET,)]
+        pairing = self.nominal.known.pairing
+        others = [h for h in found if h.effects != (pairing,)]
         asks = self._parallel([delayed(asks_for_offset)(h.refit, self.data) for h in others])
         pairs = [h for h, share in zip(others, asks, strict=True) if share > LEAST_OFFSET]
-        arms = [h.refit.arm.with_effect(OFFSET, torque=0.0) for h in pairs]
+        absent = self.nominal.known[pairing].null_values()
+        arms = [h.refit.arm.with_effect(pairing, **absent) for h in pairs]
         far = min(h.score.windows for h in found) > FAR_OFF
-        return self.refit_all([(*h.effects, OFFSET) for h in pairs], arms, done, share, thorough=far)
+        return self.refit_all([(*h.effects, pairing) for h in pairs], arms, done, share, thorough=far)
 
     def _parallel(self, tasks):  # type: ignore[no-untyped-def]
         if len(tasks) > 1:

@@ -14,7 +14,6 @@ from flexarm_env.identify.screen import Base, Trial, attempt, first_start, scree
 
 #: A brief fit is one at this level, of so many iterations.
 BRIEF_LEVEL, BRIEF_ITERATIONS = 0.003, 2
-OFFSET = "constant_torque"
 
 
 def excess(value: float) -> float:
@@ -88,7 +87,7 @@ def fit_from_signature(effect: str, without: Arm, nominal: Arm, data: Data) -> H
 
 def asks_for_offset(found: Refit, data: Data) -> float:
     """Return the share of what a refit leaves that looks like a constant torque."""
-    return sum(signature.explained for signature in signatures(screening_base(found, data), OFFSET))
+    return sum(signature.explained for signature in signatures(screening_base(found, data), found.arm.known.pairing))
 
 
 def fit_briefly(arm: Arm, nominal: Arm, data: Data) -> tuple[float, Refit]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexarm_env.identify.acceptance import Acceptance, is_lost
 from flexarm_env.identify.fits import Fits
-from flexarm_env.identify.hypothesis import OFFSET, Hypothesis
+from flexarm_env.identify.hypothesis import Hypothesis
 from flexarm_env.identify.problem import Score
 from flexarm_env.identify.refit import Refit, as_it_is, with_effects_of
 from flexarm_env.identify.screen import Trial
@@ -75,8 +75,9 @@ class Proposals:
         if are_lost(hypotheses, best) and is_first:  # a second effect's fits take minutes, with the first in the arm
             tried = [h.effects[0] for h in hypotheses]
             hypotheses += self.fits.with_all_constants(found, trials, tried, done + 0.25 * share, 0.25 * share)
-        offset = OFFSET not in found.arm.effects
-        if offset and hypotheses and not any(self.rules.is_enough(h.score) for h in hypotheses):
+        pairing = found.arm.known.pairing
+        lacks = bool(pairing) and pairing not in found.arm.effects
+        if lacks and hypotheses and not any(self.rules.is_enough(h.score) for h in hypotheses):
             hypotheses += self.fits.with_offset(hypotheses, done + 0.5 * share, 0.5 * share)
         return hypotheses
 

@@ -11,7 +11,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.acceptance import WHOLE, Acceptance, stays_lost
 from flexarm_env.identify.data import Data
 from flexarm_env.identify.fits import Fits
-from flexarm_env.identify.hypothesis import OFFSET, Hypothesis, at_bound, excess, in_windows, judged
+from flexarm_env.identify.hypothesis import Hypothesis, at_bound, excess, in_windows, judged
 from flexarm_env.identify.least_squares import in_threads
 from flexarm_env.identify.one_by_one import one_by_one
 from flexarm_env.identify.problem import Score, score
@@ -207,7 +207,7 @@ class Search:
             if self.best.windows > FAR_OFF:  # so much is missing that no rival can be told from another
                 break
             now = judged(tuple(self.accepted), self.found, self.data)
-            if effect == OFFSET or max(now.score.windows, now.fitted.windows) > AT_NOISE:
+            if self.found.arm.known[effect].pairs_with_all or max(now.score.windows, now.fitted.windows) > AT_NOISE:
                 self._put(place, in_place_of(effect, now, self.fits, self.rules, done))
         self.equivalent = [[n for n in names if n == names[0] or n not in self.accepted] for names in self.equivalent]
 
