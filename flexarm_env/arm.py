@@ -1,4 +1,4 @@
-"""The arm: base constants, sensors and effects. Everything takes one, and the loop returns a better one."""
+"""The arm: base constants, sensors and effects."""
 
 from __future__ import annotations
 
@@ -26,21 +26,30 @@ Values = Mapping[str, float]
 
 @dataclass(frozen=True)
 class Arm(Shown):
-    """A flexible (or rigid) arm. Immutable: every change returns another arm.
+    """Model of a flexible or rigid arm: base constants, sensors and effects, in SI units. Immutable.
+
+    A value has a path: "beam.length", "sensors.arm_angle.gain", "effects.coulomb.torque".
 
     Attributes:
-        name: for a person.
-        input: what the command is, "current" or "voltage".
-        constants: base constants in SI units by section and key, as {"drive": {"gear_ratio": 1.5, …}, …}; without "beam" the
-            arm is rigid.
-        sensors: settings of each measured signal in SI units.
-        effects: parameters of each effect in SI units.
-        fixed: paths of constants that no fit may move.
-        columns: how foreign recordings name their columns, or nothing.
-        fitted: for each fitted value ("beam.bending_stiffness") its value, low and high end of the 90 % interval and unit.
-        origin: from which recordings, by which command the fit came.
-        description: one line for a person.
-        known: the effects that exist.
+        name: title in tables and pictures.
+        input: kind of the command, "current" or "voltage".
+        constants: base constants by section and key, {"drive": {"gear_ratio": 1.5, …}, …}; without "beam" the arm is rigid.
+        sensors: settings of each measured signal.
+        effects: parameters of each effect.
+        fixed: paths of constants that a fit keeps.
+        columns: the map of columns of foreign recordings, or None.
+        fitted: value, low and high end of the 90 % interval and unit of each fitted path.
+        origin: recordings, command and seed of the fit.
+        description: one line about the arm.
+        known: catalogue of effects.
+
+    Example:
+        >>> from flexarm_env import Arm
+        >>> arm = Arm.load("thesis").with_effect("backlash", gap=0.06)
+        >>> arm
+        Arm('thesis', current drive, effects: viscous, coulomb, stiction, backlash)
+        >>> arm.value("beam.length"), arm.parameter("beam.length").unit
+        (1.0, 'm')
     """
 
     name: str
@@ -60,26 +69,60 @@ class Arm(Shown):
 
     @classmethod
     def load(cls, source: str | Path = "thesis", known: Catalogue | None = None) -> Arm:
-        """Read an arm file, or one of the shipped arms by name.
+        """Read an arm file, or a shipped arm by its name.
+
+        Args:
+            source: path of a TOML file, or "thesis", "thesis-fem", "cu-flexible", "cu-rigid", "emps".
+            known: catalogue of effects; the shipped and installed ones by default.
 
         Raises:
-            InputError: for a file that is not there or not an arm file, in one line.
+            InputError: for a missing or faulty file, with the table and key at fault.
+
+        Example:
+            >>> Arm.load("cu-rigid").signals
+            ['arm_angle', 'motor_speed']
         """
         from flexarm_env.arm_file import read_arm
 
         return read_arm(source, known or catalogue())
 
     def save(self, path: str | Path) -> None:
-        """Write the arm file, whole or not at all."""
+        """Write the arm to a TOML file, completely or not at all. `load` reads back every value bit for bit.
+
+        Args:
+            path: of the file; an existing one is replaced.
+
+        Raises:
+            InputError: if the file cannot be written.
+
+        Example:
+            >>> import tempfile
+            >>> arm = Arm.load("thesis").with_effect("cogging")
+            >>> with tempfile.TemporaryDirectory() as folder:
+            ...     arm.save(f"{folder}/cogging.toml")
+            ...     Arm.load(f"{folder}/cogging.toml") == arm
+            True
+        """
         from flexarm_env.arm_file import write_arm
 
         write_arm(self, Path(path))
 
     def with_effect(self, name: str, **parameters: float) -> Arm:
-        """Return the arm with an effect added or changed; parameters not given take their typical size.
+        """Add an effect, or change its parameters.
+
+        Args:
+            name: of the effect, as `flexarm effects` lists it.
+            **parameters: values in SI units. Others keep their value in the arm, or take their typical one.
+
+        Returns:
+            Another arm; this one is unchanged.
 
         Raises:
-            InputError: for an effect or parameter that does not exist, or a value out of bounds.
+            InputError: for an unknown effect or parameter, a value out of bounds, or a part that the arm lacks.
+
+        Example:
+            >>> Arm.load("thesis").with_effect("backlash", gap=0.06).effects["backlash"]
+            {'gap': 0.06}
         """
         effect = self.known[name]
         values = {key: p.typical for key, p in effect.parameters.items()} | dict(self.effects.get(name, {}))
@@ -96,7 +139,16 @@ class Arm(Shown):
             raise InputError(f"effect '{effect.name}' needs {' and '.join(missing)}, which arm '{self.name}' does not have")
 
     def has(self, need: str) -> bool:
-        """Whether the arm has a part ("beam", "motor_inertia", "hub_inertia"), a sensor ("strain" for any gage) or an input."""
+        """Whether the arm has a part, a sensor or an input.
+
+        Args:
+            need: "beam", "motor_inertia", "hub_inertia" (or a beam), the name of a signal, "strain" for any strain gage,
+                "current" or "voltage".
+
+        Example:
+            >>> Arm.load("cu-rigid").has("beam"), Arm.load("thesis").has("strain")
+            (False, True)
+        """
         if need == "motor_inertia":
             return self.constants["drive"]["motor_inertia"] > 0.0
         if need == "hub_inertia":
@@ -108,15 +160,33 @@ class Arm(Shown):
         return need in self.constants if need == "beam" else need in self.sensors
 
     def can_have(self, name: str) -> bool:
-        """Whether the arm has what an effect needs."""
+        """Whether the arm has all parts, sensors and the input that an effect needs.
+
+        Example:
+            >>> Arm.load("cu-rigid").can_have("payload")
+            False
+        """
         return all(self.has(need) for need in self.known[name].needs)
 
     def without_effect(self, name: str) -> Arm:
-        """Return the arm without an effect."""
+        """Remove an effect; without it, return an equal arm.
+
+        Example:
+            >>> list(Arm.load("thesis").without_effect("coulomb").effects)
+            ['viscous', 'stiction']
+        """
         return replace(self, effects={key: value for key, value in self.effects.items() if key != name})
 
     def parameter(self, path: str) -> Parameter:
-        """Return what is known about a value such as "beam.length", "sensors.arm_angle.gain", "effects.coulomb.torque"."""
+        """Look up unit, bounds, typical size and prior of a value.
+
+        Args:
+            path: "beam.length", "sensors.arm_angle.gain" or "effects.coulomb.torque".
+
+        Example:
+            >>> Arm.load("thesis").parameter("sensors.strain_base.gain").unit
+            'V/N/m'
+        """
         section, *rest = path.split(".")
         if section == "effects":
             return self.known[rest[0]].parameters[rest[1]]
@@ -125,7 +195,15 @@ class Arm(Shown):
         return SECTIONS[section][rest[0]]
 
     def value(self, path: str) -> float:
-        """Return the value at a path, in SI units."""
+        """Look up a value in SI units.
+
+        Args:
+            path: "beam.length", "sensors.arm_angle.gain" or "effects.coulomb.torque".
+
+        Example:
+            >>> Arm.load("thesis").value("effects.coulomb.torque")
+            0.282
+        """
         section, *rest = path.split(".")
         if section in ("effects", "sensors"):
             table = self.effects if section == "effects" else self.sensors
@@ -133,7 +211,18 @@ class Arm(Shown):
         return self.constants[section][rest[0]]
 
     def with_values(self, values: Values) -> Arm:
-        """Return the arm with the values at some paths replaced (SI units, not checked against bounds)."""
+        """Replace values, which are not checked against their bounds.
+
+        Args:
+            values: in SI units by path.
+
+        Returns:
+            Another arm; this one is unchanged.
+
+        Example:
+            >>> Arm.load("thesis").with_values({"beam.length": 0.8, "effects.coulomb.torque": 0.3}).value("beam.length")
+            0.8
+        """
         constants = {key: dict(table) for key, table in self.constants.items()}
         sensors = {key: dict(table) for key, table in self.sensors.items()}
         effects = {key: dict(table) for key, table in self.effects.items()}
@@ -149,22 +238,26 @@ class Arm(Shown):
 
     @property
     def signals(self) -> Sequence[str]:
-        """Names of the measured signals, in order."""
+        """Names of the measured signals, in the order of the readings."""
         return list(self.sensors)
 
     @staticmethod
     def sensor(signal: str) -> type[Sensor]:
-        """Return what is known about the sensor of a signal.
+        """Look up the class of a signal's sensor: unit, label, range.
 
         Raises:
-            InputError: for a signal that does not exist.
+            InputError: for an unknown signal.
+
+        Example:
+            >>> Arm.sensor("tip_deflection").label
+            'tip deflection'
         """
         if signal not in known_sensors():
             raise InputError(f"unknown signal '{signal}'{did_you_mean(signal, known_sensors())}")
         return known_sensors()[signal]
 
     def structure(self) -> Structure:
-        """Return the linear part with the effects of the structure port worked in."""
+        """Build the linear part of the arm, with all linear effects applied."""
         from flexarm_env.plant.structure import Structure
 
         beam = dict(self.constants.get("beam", {}))
@@ -191,11 +284,11 @@ class Arm(Shown):
         return structure
 
     def present(self) -> list[tuple[str, Values]]:
-        """Effects that are not absent, with their values, in the order of their names."""
+        """Effects whose values are not null, with these values, by name."""
         return [(n, self.effects[n]) for n in sorted(self.effects) if not self.known[n].absent(self.effects[n])]
 
     def laws(self) -> list[ActiveLaw]:
-        """Return the laws of friction, torque, drag and drive that act."""
+        """List the nonlinear laws of all effects that are present, with their parameters."""
         from flexarm_env.plant.flat_arrays import ActiveLaw
 
         active = []
@@ -211,28 +304,52 @@ class Arm(Shown):
         return active
 
     def _read_by(self, effect: type[Effect]) -> tuple[str, ...]:
-        """Names of the arm's signals that an effect changes."""
+        """Names of the arm's signals on which an effect's sensor law acts."""
         gages = "strain" in effect.reads
         return tuple(s for s in self.sensors if s in effect.reads or (gages and self.sensor(s).strain))
 
     def plant(self, interval: float) -> Plant:
-        """Return the compiled plant of this arm, sampled every `interval` seconds."""
+        """Compile the arm for simulation.
+
+        Args:
+            interval: sampling time [s].
+
+        Example:
+            >>> import numpy as np
+            >>> plant = Arm.load("thesis").plant(0.005)
+            >>> plant.place()
+            >>> plant.replay(np.full(100, 3.0)).shape  # readings (samples, signals) under 3 A
+            (100, 4)
+        """
         from flexarm_env.plant.plant import Plant
 
         return Plant(self.structure(), self.laws(), self.known.laws, interval)
 
     def linearise(self, mode: str, interval: float) -> LinearArm:
-        """Return the state space of the arm in a mode, "moving" or "stuck", sampled every `interval` seconds."""
+        """Linearise the arm while its hub moves or is stuck.
+
+        Args:
+            mode: "moving" or "stuck".
+            interval: sampling time [s].
+
+        Raises:
+            InputError: for another mode, or an interval that is not positive.
+
+        Example:
+            >>> frequencies, damping = Arm.load("thesis").linearise("stuck", 0.005).vibrations()
+            >>> [round(float(f), 2) for f in frequencies]
+            [2.43, 23.93]
+        """
         from flexarm_env.linear import linearise
 
         return linearise(self, mode, interval)
 
 
 def check_bounds(path: str, value: float, parameter: Parameter) -> float:
-    """Return a value if it lies within its parameter's bounds.
+    """Check a value against its parameter's bounds, and return it.
 
     Raises:
-        InputError: otherwise.
+        InputError: for a value out of bounds.
     """
     if not parameter.low <= value <= parameter.high:
         unit = f" {parameter.unit}" if parameter.unit else ""
@@ -242,6 +359,6 @@ def check_bounds(path: str, value: float, parameter: Parameter) -> float:
 
 @functools.cache
 def short_name(path: str) -> str:
-    """Name of a value for a person: "beam.length" is length, "hub.inertia" hub_inertia, "effects.x.y" x_y."""
+    """Shorten a path for tables: "beam.length" to length, "hub.inertia" to hub_inertia, "effects.x.y" to x_y."""
     section, *rest = path.split(".")
     return f"hub_{rest[0]}" if section == "hub" else "_".join(rest)

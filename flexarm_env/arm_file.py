@@ -1,4 +1,4 @@
-"""Arm files: TOML with units, read and written. Nothing in one runs code."""
+"""Arm files: reading and writing of TOML with units. An arm file never runs code."""
 
 from __future__ import annotations
 
@@ -19,21 +19,30 @@ TOP = ("name", "description", "fixed", "drive", "hub", "beam", "sensors", "effec
 
 
 def arm_folders() -> list[Path]:
-    """Folders of the shipped arms: inside an installed package, or beside it in a source tree."""
+    """List the folders of the shipped arms: inside an installed package, or beside it in a source tree."""
     here = Path(__file__).parent
     return [here / "configs" / "arms", here.parent / "configs" / "arms"]
 
 
 def shipped_arms() -> dict[str, Path]:
-    """Return the shipped arms' files by name."""
+    """List the files of the shipped arms by name.
+
+    Example:
+        >>> sorted(shipped_arms())
+        ['cu-flexible', 'cu-rigid', 'emps', 'thesis', 'thesis-fem']
+    """
     return {path.stem: path for folder in arm_folders() for path in sorted(folder.glob("*.toml"))}
 
 
 def read_arm(source: str | Path, known: Catalogue) -> Arm:
-    """Read an arm from a file or a shipped arm's name.
+    """Read an arm from a file or by the name of a shipped arm.
+
+    Args:
+        source: path or name.
+        known: catalogue of effects.
 
     Raises:
-        InputError: one line that names file, table and key, and how to mend it.
+        InputError: for a missing or faulty file: one line with file, table and key, and how to mend it.
     """
     path = Path(source)
     shipped = shipped_arms()
@@ -49,7 +58,16 @@ def read_arm(source: str | Path, known: Catalogue) -> Arm:
 
 
 def arm_from_table(table: Mapping[str, Any], name: str, known: Catalogue) -> Arm:
-    """Build an arm from the tables of an arm file."""
+    """Build an arm from the tables of an arm file.
+
+    Args:
+        table: the parsed file.
+        name: of an arm whose file states none.
+        known: catalogue of effects.
+
+    Raises:
+        InputError: for an unknown, missing or impossible entry.
+    """
     _refuse_unknown("", table, TOP)
     drive = dict(_table(table, "drive"))
     kind = drive.pop("input", "current")
@@ -169,16 +187,22 @@ def _check_needs(arm: Arm) -> None:
 
 
 def write_arm(arm: Arm, path: Path) -> None:
-    """Write an arm file, whole or not at all.
+    """Write an arm file, completely or not at all.
 
     Raises:
-        InputError: if the place cannot be written.
+        InputError: if the file cannot be written.
     """
     write_whole(path, arm_text(arm))
 
 
 def arm_text(arm: Arm) -> str:
-    """Return the arm file's text, values in SI units with the unit beside them."""
+    """Format an arm as TOML, in SI units with the unit beside each value. Defaults are left out.
+
+    Example:
+        >>> text = arm_text(Arm.load("thesis").with_effect("backlash", gap=0.06))
+        >>> text.splitlines()[-2:]
+        ['[effects.backlash]', 'gap = "0.06 rad"']
+    """
     import tomlkit
 
     document = tomlkit.document()

@@ -1,4 +1,4 @@
-"""The arm as a linear system, while its hub moves or while it is stuck: what a controller is designed from."""
+"""State-space model of the arm while its hub moves or is stuck, for the design of controllers."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 MODES = ("moving", "stuck")
 INPUTS = ("command", "hub_torque")
-#: A pair of eigenvalues whose damping ratio is above this does not show as a vibration.
+#: A pair of eigenvalues with a higher damping ratio is not counted as a vibration.
 LARGEST_DAMPING = 0.95
-#: Eigenvalues slower than this [rad/s] are a rigid motion.
+#: Eigenvalues below this [rad/s] belong to a rigid motion.
 SLOWEST = 1e-6
 
 
@@ -30,10 +30,10 @@ class LinearArm:
 
     Attributes:
         mode: "moving" or "stuck". Stuck, the hub's angle stays in the state as a constant and its speed as zero.
-        interval: over which the inputs are held [s].
+        interval: sampling time; inputs are held over it [s].
         states: names of the states: "hub", "deflection_1", … [rad, m], their rates "hub_rate", …, and "extra_1", … for
             lagged current and filtered sensors.
-        inputs: "command" [A or V] and "hub_torque", whatever else turns the hub [Nm].
+        inputs: "command" [A or V] and "hub_torque", an external torque on the hub [Nm].
         outputs: names of the signals.
         dynamics: (states, states) [1/s].
         forcing: (states, inputs).
@@ -56,7 +56,7 @@ class LinearArm:
     offset: Matrix
 
     def vibrations(self) -> tuple[Matrix, Matrix]:
-        """Return natural frequencies (vibrations,) [Hz], rising, and damping ratios (vibrations,)."""
+        """Compute natural frequencies (vibrations,) [Hz], rising, and damping ratios (vibrations,)."""
         rates = np.linalg.eigvals(self.dynamics)
         rates = rates[(rates.imag > SLOWEST) & (-rates.real < LARGEST_DAMPING * np.abs(rates))]
         rates = rates[np.argsort(np.abs(rates))]
@@ -64,15 +64,21 @@ class LinearArm:
 
 
 def linearise(arm: Arm, mode: str, interval: float) -> LinearArm:
-    """Return an arm's linear part, without dry friction, backlash, saturation and dead time.
+    """Linearise an arm without dry friction, backlash, saturation and dead time (thesis eqs. 3.9 to 3.14).
 
     Args:
-        arm: whose structure it is; effects of the structure port are worked in (thesis eqs. 3.9 to 3.14).
+        arm: with all its linear effects.
         mode: "moving" (pinned beam, hub free) or "stuck" (clamped beam, hub held).
         interval: sampling time [s].
 
     Raises:
         InputError: for another mode or an interval that is not a positive number.
+
+    Example:
+        >>> from flexarm_env import Arm
+        >>> model = linearise(Arm.load("thesis"), "moving", 0.005)
+        >>> model.states[:2], model.transition.shape, model.output.shape
+        (('hub', 'deflection_1'), (6, 6), (4, 6))
     """
     if mode not in MODES:
         raise InputError(f"no mode '{mode}'{did_you_mean(mode, MODES)}")
@@ -84,7 +90,7 @@ def linearise(arm: Arm, mode: str, interval: float) -> LinearArm:
     drivers = found.forcing[:, [COMMAND, HUB_TORQUE]]
     width, states = found.modal.shape
     blocks = _blocks(found.c0, found.c1)
-    # the angles of held bodies drive the mode, and are states here
+    # The angles of held bodies are inputs of the mode, and states of this model.
     driven, held = np.zeros((width, states)), np.zeros((states, states))
     for body, driver in enumerate((HELD_HUB, HELD_MOTOR)[:bodies] if mode == "stuck" else ()):
         driven[:, body], held[:, body] = found.forcing[:, driver], found.held[:, driver]
@@ -108,7 +114,7 @@ def linearise(arm: Arm, mode: str, interval: float) -> LinearArm:
 
 
 def _blocks(c0: Matrix, c1: Matrix) -> Matrix:
-    """Dynamics of the mode's blocks, (2 blocks, 2 blocks)."""
+    """Assemble the dynamics of the mode's blocks, (2 blocks, 2 blocks)."""
     dynamics, place = np.zeros((2 * len(c0), 2 * len(c0))), np.arange(0, 2 * len(c0), 2)
     dynamics[place, place + 1], dynamics[place + 1, place], dynamics[place + 1, place + 1] = 1.0, -c0, -c1
     return dynamics

@@ -1,4 +1,4 @@
-"""What a parameter is, and the base constants that every arm has."""
+"""Parameters with units, bounds and priors, and the base constants of an arm."""
 
 from __future__ import annotations
 
@@ -15,19 +15,24 @@ NEEDS = ("beam", "motor_inertia", "hub_inertia")
 
 @dataclass(frozen=True)
 class Parameter:
-    """A physical quantity that an arm file may set and that a fit may move.
+    """A physical quantity of an arm file, with its bounds and its prior in a fit.
 
     Attributes:
-        unit: pint unit of the plain number ("" for a ratio).
-        low: smallest value allowed.
-        high: largest value allowed.
-        typical: a usual size, from which a search starts and against which a step is judged.
-        null: the value at which the effect is absent; None where no single value means absence.
-        spread: relative standard deviation that a fit assumes of the value in an arm file;
-            0 keeps the value as it is, infinity (the default of an effect's parameter) lets data decide.
-        meaning: one line for a person.
+        unit: SI unit, as pint writes it; "" for a ratio.
+        low: lower bound.
+        high: upper bound.
+        typical: usual size in the thesis's arm, where a search starts.
+        null: value at which the effect is absent; None where no single value means absence.
+        spread: relative standard deviation of the prior around the value of the arm file. 0 keeps the value; infinity, the
+            default of an effect's parameter, is no prior.
+        meaning: description in one line.
         source: equation, table or paper.
-        of_command: whether it is a command's size, in A or V as the drive has it.
+        of_command: whether the quantity is a command, in A or V.
+
+    Example:
+        >>> gap = Parameter("rad", 0.0, 1.0, 0.06, null=0.0, meaning="gap of the gears, motor side")
+        >>> gap.scaled_by({"rad": 2.0})
+        2.0
     """
 
     unit: str
@@ -41,7 +46,11 @@ class Parameter:
     of_command: bool = False
 
     def scaled_by(self, scales: Mapping[str, float]) -> float:
-        """Return how much larger than typical it is where quantities are so many times as large, by unit and for "command"."""
+        """Look up the factor on the typical size.
+
+        Args:
+            scales: factors by unit, and "command" for commands; 1 where the unit is missing.
+        """
         return scales.get("command" if self.of_command else self.unit, 1.0)
 
 
@@ -72,7 +81,7 @@ DRIVE = {
     ),
     "limit": Parameter("", 0.0, 1e6, 5.0, spread=0.0, meaning="largest command, in A or V", source="thesis section 4.2"),
     "torque_noise": Parameter(
-        "N*m", 0.0, 1e4, 0.0, spread=0.0, meaning="disturbance at the hub in each sample that no model need explain"
+        "N*m", 0.0, 1e4, 0.0, spread=0.0, meaning="unmodelled disturbance torque at the hub, standard deviation per sample"
     ),
     "gear_stiffness": Parameter(
         "N*m/rad",
@@ -119,7 +128,7 @@ BEAM = {
 }
 SECTIONS: dict[str, dict[str, Parameter]] = {"drive": DRIVE, "hub": HUB, "beam": BEAM}
 
-#: Values that an arm file may leave out.
+#: Defaults of keys that an arm file may omit.
 DEFAULTS: dict[str, dict[str, float]] = {
     "drive": {
         "resistance": 0.0,
@@ -134,7 +143,7 @@ DEFAULTS: dict[str, dict[str, float]] = {
     "beam": {"tip_mass": 0.0, "tip_inertia": 0.0},
 }
 
-#: What a sensor's table may hold. Units and defaults of each signal: `Sensor.settings`.
+#: Keys of a sensor's table. Units, defaults and priors of each signal: `Sensor.settings`.
 SENSOR = {
     "gain": Parameter("", -1e6, 1e6, 1.0, spread=0.0, meaning="reading per quantity"),
     "offset": Parameter("", -1e6, 1e6, 0.0, spread=0.0, meaning="reading at zero"),

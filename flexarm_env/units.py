@@ -1,4 +1,4 @@
-"""Units: text such as "rpm" or "0.0116 rad" to plain SI numbers, by pint."""
+"""Conversion of quantities with units, such as "0.0116 rad", to SI numbers, by pint."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flexarm_env.errors import InputError, did_you_mean
 if TYPE_CHECKING:
     import pint
 
-# A whitelist, because pint evaluates what it is given: "V**9**9**9" would not return.
+# A whitelist, because pint evaluates its input: "V**9**9**9" would not return.
 _TERM = r"[A-Za-zµμΩ°]+(?:_[A-Za-z]+)*(?: *(?:\^|\*\*) *-?\d|[²³])?"
 _GROUP = rf"\({_TERM}(?: *[*/·] *{_TERM}| +{_TERM})*\)(?:(?:\^|\*\*)-?\d|[²³])?"
 _FACTOR = rf"(?:{_TERM}|{_GROUP})"
@@ -58,7 +58,7 @@ def _allowed(target: str) -> str:
 
 @functools.lru_cache(maxsize=256)
 def _parse(text: str, target: str) -> pint.Unit:
-    """Return the pint unit of a text; `target` is only for the message."""
+    """Parse a unit; `target` only serves the message."""
     import pint
 
     if len(text) <= _LONGEST and _UNIT.fullmatch(text):
@@ -77,10 +77,10 @@ def _angle_power(unit: pint.Unit) -> float:
 
 
 def _same_kind(unit: pint.Unit, target: pint.Unit) -> bool:
-    """Tell whether a unit measures what the target does.
+    """Compare the quantities that two units measure.
 
-    To pint an angle is a bare number, so that Hz would become rad/s without its 2π. Angles must agree,
-    except in forces and voltages "per radian", where Nm for Nm/rad is customary.
+    Pint treats an angle as a bare number, and would take Hz for rad/s without the factor 2π. Powers of the radian must
+    therefore agree, except in forces and voltages "per radian": Nm for Nm/rad is customary.
     """
     if unit.dimensionality != target.dimensionality:
         return False
@@ -89,25 +89,32 @@ def _same_kind(unit: pint.Unit, target: pint.Unit) -> bool:
 
 
 def converts(unit: str, target: str) -> bool:
-    """Tell whether values in `unit` can be given in `target`.
+    """Whether a unit converts to another.
 
     Raises:
-        InputError: for a unit that does not exist.
+        InputError: for an unknown unit.
+
+    Example:
+        >>> converts("rpm", "rad/s"), converts("Hz", "rad/s")
+        (True, False)
     """
     return unit == target or _same_kind(_parse(unit, target), _parse(target, target))
 
 
 def factor(unit: str, target: str, scale: str | float = 1.0) -> float:
-    """Return how many `target` one `unit`, multiplied by `scale`, is: `factor("rpm", "rad/s")` is 2π/60.
+    """Compute the factor that converts numbers of one unit to another.
 
     Args:
-        unit: the unit of the values, such as "deg" or "V".
-        target: the unit wanted, such as "rad".
-        scale: a plain number, or a quantity such as "2 rad/V" whose unit counts.
+        unit: of the numbers, such as "deg" or "V".
+        target: unit of the result, such as "rad".
+        scale: another factor, a number or a quantity such as "2 rad/V", whose unit counts.
 
     Raises:
-        InputError: for an unknown unit, one that measures something else than `target`, or one such as degC
-            whose zero is elsewhere.
+        InputError: for an unknown unit, a unit of another quantity, or one with another zero, such as degC.
+
+    Example:
+        >>> factor("ms", "s"), factor("V", "rad", scale="2 rad/V")
+        (0.001, 2.0)
     """
     number, scale_unit = (float(scale), "") if isinstance(scale, (int, float)) else split(scale)
     if unit == target and not scale_unit:
@@ -124,7 +131,11 @@ def factor(unit: str, target: str, scale: str | float = 1.0) -> float:
 
 
 def check_unit(unit: str) -> None:
-    """Raise InputError for a unit, of a program rather than a file, that does not exist."""
+    """Refuse a unit, stated by a program and not by a file, that pint does not know.
+
+    Raises:
+        InputError: for an unknown unit.
+    """
     import pint
 
     try:
@@ -134,7 +145,7 @@ def check_unit(unit: str) -> None:
 
 
 def as_float(value: float) -> float:
-    """Return a number as a float; infinity for a whole number that no float can be."""
+    """Convert a number to a float, a whole number beyond the range of floats to infinity."""
     try:
         return float(value)
     except OverflowError:
@@ -142,13 +153,26 @@ def as_float(value: float) -> float:
 
 
 def is_quantity(text: str) -> bool:
-    """Tell whether a text has the form of a number, alone or with a unit (which need not exist)."""
+    """Whether a text has the form of a number, alone or with a unit, known or not.
+
+    Example:
+        >>> is_quantity("0.3 kg"), is_quantity("three")
+        (True, False)
+    """
     match = _QUANTITY.fullmatch(text.strip())
     return bool(match and (not match[2] or (len(match[2]) <= _LONGEST and _UNIT.fullmatch(match[2]))))
 
 
 def split(text: str) -> tuple[float, str]:
-    """Return the finite number and the unit ("" if none) of a text such as "0.0116 rad"."""
+    """Split a quantity into number and unit, "" for none.
+
+    Raises:
+        InputError: for a text of another form, or a number that is not finite.
+
+    Example:
+        >>> split("9.0 1/rad")
+        (9.0, '1/rad')
+    """
     match = _QUANTITY.fullmatch(text.strip())
     if match is None or not math.isfinite(float(match[1])):
         raise InputError(f"{text[:_LONGEST]!r} is not a number with a unit; write for example '0.3 kg'")
@@ -156,14 +180,18 @@ def split(text: str) -> tuple[float, str]:
 
 
 def quantity(value: str | float, target: str) -> float:
-    """Return a value in `target` units.
+    """Convert a quantity to a unit.
 
     Args:
-        value: a text such as "0.0116 rad", or a plain number, which is taken as it is.
-        target: the unit wanted; "" for a bare number.
+        value: a text such as "0.0116 rad", or a number, which is already in `target`.
+        target: unit of the result; "" for a bare number.
 
     Raises:
-        InputError: for a text that is no number with a unit, or a unit that does not convert to `target`.
+        InputError: for a text that is not a number with a unit, or a unit that does not convert to `target`.
+
+    Example:
+        >>> quantity("300 g", "kg"), quantity(0.3, "kg")
+        (0.3, 0.3)
     """
     if not isinstance(value, str):
         return as_float(value)
@@ -174,10 +202,14 @@ def quantity(value: str | float, target: str) -> float:
 
 
 def base_value(text: str) -> float:
-    """Return a quantity such as "20 degC" in SI base units (293.15); a plain number as it is.
+    """Convert a quantity to SI base units; a number without a unit is kept.
 
     Raises:
-        InputError: for a text that is no number with a unit, or a unit that does not exist.
+        InputError: for a text that is not a number with a unit, or an unknown unit.
+
+    Example:
+        >>> base_value("20 degC")
+        293.15
     """
     number, unit = split(text)
     if not unit:

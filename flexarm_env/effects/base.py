@@ -43,7 +43,8 @@ class Effect:
         motor_share: the constant of the drive that says which part of its friction acts on the motor; "" for none.
         reads: the signals that its sensor port changes, those of them that the arm has; "strain" for every strain gage.
         per_sensor: whether each parameter belongs to the signal of its name, and is none where the arm does not measure that.
-        scan_phase: the parameter that shifts its sine, of which the screening tries a value and that half a turn on; "" for none.
+        pairs_with_all: whether each other effect is tried beside it as well, because it makes up for them and they for it.
+        scan_phase: the parameter that shifts its sine, which the screening turns by half where the sign is wrong; "" for none.
         most_elements: finite elements of a beam beyond which it is no candidate.
         condition: the condition of a recording, as in "# payload = 0.3 kg", that is added to its size; "" for none.
         modifies: the effect that it changes and without which it is no candidate, "" for none.
@@ -62,6 +63,7 @@ class Effect:
     motor_share: ClassVar[str] = ""
     reads: ClassVar[tuple[str, ...]] = ()
     per_sensor: ClassVar[bool] = False
+    pairs_with_all: ClassVar[bool] = False
     scan_phase: ClassVar[str] = ""
     most_elements: ClassVar[float] = math.inf
     condition: ClassVar[str] = ""
@@ -80,6 +82,11 @@ class Effect:
         """Whether these values make the effect vanish: every size parameter at its null."""
         sizes = [(values[key], p.null) for key, p in cls.parameters.items() if p.null is not None]
         return bool(sizes) and all(value == null for value, null in sizes)
+
+    @classmethod
+    def null_values(cls) -> dict[str, float]:
+        """Values that make the effect vanish; typical ones of parameters that have no null."""
+        return {key: p.typical if p.null is None else p.null for key, p in cls.parameters.items()}
 
     @classmethod
     def starts(cls) -> list[dict[str, float]]:

@@ -51,6 +51,11 @@ class Catalogue(Mapping[str, type[Effect]]):
     def __len__(self) -> int:
         return len(self._effects)
 
+    @property
+    def pairing(self) -> str:
+        """Name of the effect beside which each other one is tried; "" if there is none."""
+        return next((name for name, effect in self.items() if effect.pairs_with_all), "")
+
     def extended(self, *effects: type[Effect]) -> Catalogue:
         """Extend the catalogue by effects; one of the same name replaces the old."""
         names = {effect.name for effect in effects}

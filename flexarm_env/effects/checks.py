@@ -31,6 +31,8 @@ def checked(effect: type[Effect]) -> type[Effect]:
             raise InputError(f"{where}: parameters['{key}'] is {parameter!r}; write Parameter(unit, low, high, typical)")
         if parameter.unit:
             check_unit(parameter.unit)
+    if effect.scan_phase and effect.scan_phase not in effect.parameters:
+        raise InputError(f"{where}: scan_phase is {effect.scan_phase!r}{did_you_mean(effect.scan_phase, effect.parameters)}")
     others = effect.confused_with
     if not isinstance(others, (tuple, list)) or not all(isinstance(o, str) and o != effect.name for o in others):
         raise InputError(f"{where}: confused_with is {others!r}; give a tuple of other effects' names")

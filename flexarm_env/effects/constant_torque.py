@@ -16,6 +16,7 @@ class ConstantTorque(Effect):
     parameters: ClassVar = {"torque": torque_size("torque on the hub", 0.05, low=-1e4)}
     looks_like = "the arm moves further one way than the other, and rests under an offset; missing torque is a constant"
     confused_with = ("asymmetric_coulomb", "cable_stiffness", "base_tilt")
+    pairs_with_all = True
 
     @staticmethod
     def structure(structure: Structure, torque: float) -> None:

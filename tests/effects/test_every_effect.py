@@ -258,3 +258,10 @@ def test_an_effect_of_one_s_own_is_composed_where_it_is_unpickled(tmp_path):
     )
     made = subprocess.run([sys.executable, "-c", program, str(pickled)], capture_output=True, text=True, check=True)
     assert "return -stiffness * angle**3" in made.stdout
+
+
+def test_a_phase_that_is_no_parameter_is_refused(tmp_path):
+    file = tmp_path / "mine.py"
+    file.write_text(OWN.replace("    looks_like", '    scan_phase = "stifness"\n    looks_like'))
+    with pytest.raises(InputError, match="scan_phase is 'stifness'; did you mean 'stiffness'"):
+        load_effect(f"{file}:Spring")

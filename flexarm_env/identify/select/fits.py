@@ -14,9 +14,6 @@ from flexarm_env.identify.select.screen import Trial, control_of
 from flexarm_env.identify.select.signatures import baseline, signatures
 from flexarm_env.identify.select.starts import candidates, first_start, sized
 
-#: The effect that is tried beside every other: alone it hides what friction explains, and friction hides it.
-COMPANION = "constant_torque"
-
 #: The error of a brief calibration on the fitted part, and the calibration.
 Brief = tuple[float, Calibration]
 
@@ -88,15 +85,15 @@ def fit_in_place(calibrator: Calibrator, without: Arm, effects: Sequence[str], p
 
 
 def fit_with_companion(calibrator: Calibrator, models: Sequence[Model], progress: Progress) -> list[Model]:
-    """Calibrate models with a constant torque beside each: alone it hides what friction explains, and friction hides it."""
-    dataset = calibrator.dataset
-    others = [m for m in models if m.effects != (COMPANION,)]
+    """Calibrate models with the catalogue's companion beside each: alone it hides what others explain, and they hide it."""
+    known, companion = calibrator.nominal.known, calibrator.nominal.known.pairing
+    others = [m for m in models if m.effects != (companion,)]
     shares = calibrator.workers.map([(_share_of_companion, (calibrator, m.calibration)) for m in others])
     least = calibrator.settings.proposing.least_offset
     pairs = [m for m, share in zip(others, shares, strict=True) if share > least]
-    arms = [m.arm.with_effect(COMPANION, torque=0.0) for m in pairs]
-    far = min(m.score.windows for m in models) > dataset.settings.errors.far_off
-    return fit_models(calibrator, [(*m.effects, COMPANION) for m in pairs], arms, progress, thorough=far)
+    arms = [m.arm.with_effect(companion, **known[companion].null_values()) for m in pairs]
+    far = min(m.score.windows for m in models) > calibrator.settings.errors.far_off
+    return fit_models(calibrator, [(*m.effects, companion) for m in pairs], arms, progress, thorough=far)
 
 
 def _start_smaller(
@@ -141,4 +138,5 @@ def _fit_from_signature(calibrator: Calibrator, effect: str, without: Arm) -> Mo
 
 def _share_of_companion(calibrator: Calibrator, found: Calibration) -> float:
     """Compute the share of what a calibration leaves that looks like the companion."""
-    return sum(signature.explained for signature in signatures(baseline(found, calibrator.dataset), COMPANION))
+    companion = found.arm.known.pairing
+    return sum(signature.explained for signature in signatures(baseline(found, calibrator.dataset), companion))

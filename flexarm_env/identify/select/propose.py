@@ -11,7 +11,7 @@ from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.progress import Progress
 from flexarm_env.identify.replay.error_measure import Score
 from flexarm_env.identify.select.criteria import Criteria
-from flexarm_env.identify.select.fits import COMPANION, fit_models, fit_with_all_constants, fit_with_companion
+from flexarm_env.identify.select.fits import fit_models, fit_with_all_constants, fit_with_companion
 from flexarm_env.identify.select.model import Model
 from flexarm_env.identify.select.screen import Trial, control_of, screen
 
@@ -63,7 +63,8 @@ def others(
     if none_comes_near(criteria, models, found.score) and is_first:  # a second effect's fits take minutes
         tried = [m.effects[0] for m in models]
         models = models + fit_with_all_constants(calibrator, found.calibration, trials, tried, constants)
-    lacks_companion = COMPANION not in found.arm.effects
+    companion = found.arm.known.pairing
+    lacks_companion = bool(companion) and companion not in found.arm.effects
     if lacks_companion and models and not any(criteria.is_sufficient(m.score) for m in models):
         models = models + fit_with_companion(calibrator, models, companions)
     return models

@@ -11,7 +11,7 @@ import numpy as np
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.progress import Progress
 from flexarm_env.identify.select.criteria import Criteria, Measure
-from flexarm_env.identify.select.fits import COMPANION, fit_models
+from flexarm_env.identify.select.fits import fit_models
 from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.propose import nearest, none_comes_near, others, starts_of_search
 from flexarm_env.identify.select.screen import Trial, control_of, screen
@@ -107,7 +107,7 @@ class Search:
         for place, effect in enumerate(trace.effects):
             if not self.criteria.can_compare_rivals(trace.model.score):
                 break
-            if effect == COMPANION or self.criteria.leaves_room(trace.model):
+            if trace.model.arm.known[effect].pairs_with_all or self.criteria.leaves_room(trace.model):
                 comparison = compare_rivals(self.calibrator, self.criteria, effect, trace.model, progress)
                 trace = exchange(trace, place, comparison)
         names = trace.effects
