@@ -126,9 +126,9 @@ class PolicyInterface:
             added += options.pulse * self.last[:, 1]
         share = np.clip(self.wanted + added, -1.0, 1.0)
         self.commands[self.sample % self.depth] = self.command = share
-        acts = self.loads.through(share * self.limit)
+        acts = self.loads.behind_dead_zone(share * self.limit)
         if self.estimator:
             self.estimator.predict(acts)
         if isinstance(self.base, LQG):
-            self.base.estimator.amend(acts - self.loads.through(self.wanted * self.limit))
+            self.base.estimator.amend(acts - self.loads.behind_dead_zone(self.wanted * self.limit))
         return share[:, None].astype(np.float32)

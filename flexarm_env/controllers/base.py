@@ -95,8 +95,8 @@ class Controller(ABC):
         seen = seen.reshape(self._width, -1)
         finite = np.isfinite(seen)
         self._seen = seen.copy() if finite.all() else np.where(finite, seen, self._seen)
-        command = self.clipped(self.loads.met(self._command(self._seen), self._seen[:, -1]))
-        self._sent(self.loads.through(command))
+        command = self.clipped(self.loads.compensated(self._command(self._seen), self._seen[:, -1]))
+        self._sent(self.loads.behind_dead_zone(command))
         return command if self._count is not None else command.reshape(())
 
     def action(self, observation: NDArray[np.floating]) -> NDArray[np.float32]:

@@ -27,14 +27,14 @@ class KnownLoads:
         self.stiffness, self.torque = structure.hub_stiffness / torque, structure.hub_torque / torque
         self.dead_zone = float(dict(arm.present()).get("dead_zone", {}).get("width", 0.0))
 
-    def met(self, command: Floats, target: Floats) -> Floats:
+    def compensated(self, command: Floats, target: Floats) -> Floats:
         """Add the compensation to a law's commands (count,) [A or V] at targets (count,) [rad]."""
         command = command + (self.stiffness * target - self.torque)
         if self.dead_zone > 0.0:
             command = command + self.dead_zone * np.clip(command / (EDGE * self.dead_zone), -1.0, 1.0)
         return command
 
-    def through(self, command: Floats) -> Floats:
+    def behind_dead_zone(self, command: Floats) -> Floats:
         """Compute the commands (count,) behind the dead zone."""
         if self.dead_zone > 0.0:
             return command - np.clip(command, -self.dead_zone, self.dead_zone)

@@ -22,22 +22,22 @@ def test_spring_and_torque_are_held_at_the_target(thesis):
         thesis.with_effect("cable_stiffness", stiffness=0.2, rest_angle=0.3).with_effect("constant_torque", torque=-0.1)
     )
     target = np.array([-1.0, 0.0, 1.7])
-    np.testing.assert_allclose(PER_AMP * loads.met(np.zeros(3), target), 0.2 * (target - 0.3) + 0.1, rtol=1e-12)
+    np.testing.assert_allclose(PER_AMP * loads.compensated(np.zeros(3), target), 0.2 * (target - 0.3) + 0.1, rtol=1e-12)
 
 
 def test_a_dead_zone_lets_through_what_was_wanted(thesis):
     loads = KnownLoads(thesis.with_effect("dead_zone", width=0.4))
     wanted = np.array([-3.0, -0.1, 0.1, 0.7])
-    np.testing.assert_allclose(loads.through(loads.met(wanted, np.zeros(4))), wanted, rtol=1e-12)
-    small = loads.met(np.linspace(-0.1, 0.1, 41), np.zeros(41))
+    np.testing.assert_allclose(loads.behind_dead_zone(loads.compensated(wanted, np.zeros(4))), wanted, rtol=1e-12)
+    small = loads.compensated(np.linspace(-0.1, 0.1, 41), np.zeros(41))
     assert np.abs(np.diff(small)).max() < 0.026  # five times as steep, and nowhere thrown across
 
 
 def test_an_arm_without_loads_changes_no_bit(thesis):
     command = np.random.default_rng(0).standard_normal(100)
     loads = KnownLoads(thesis)
-    assert np.array_equal(loads.met(command, command), command)
-    assert np.array_equal(loads.through(command), command)
+    assert np.array_equal(loads.compensated(command, command), command)
+    assert np.array_equal(loads.behind_dead_zone(command), command)
 
 
 @pytest.mark.parametrize("name", ["pd", "lqg", "lqg_scheduled", "vibration_filtered"])
