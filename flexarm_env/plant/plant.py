@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from flexarm_env.plant import layout as at
+from flexarm_env.plant.active_laws import ActiveLaw
 from flexarm_env.plant.beam import Matrix
 from flexarm_env.plant.compose import Law, compose
-from flexarm_env.plant.flat_arrays import RESPONSE, ActiveLaw, pack
+from flexarm_env.plant.flat_arrays import RESPONSE, pack
 from flexarm_env.plant.structure import Structure, assemble, stacked
 
 NO_GAINS = np.zeros((0, 0, 0))
