@@ -23,11 +23,10 @@ LAW_LISTS = {
 
 @dataclass(frozen=True)
 class ActiveLaw:
-    """One law at work: its place in the catalogue's list of laws, its parameters in the law's order.
+    """One active law: its place in the catalogue's list of laws, its parameters in the law's order.
 
-    `varies` says that it changes while a body turns one way, so that the force must be fitted over each step.
-    `motor_share` is the part of it that acts on the motor where motor and hub are two bodies, `reads` the signals that it
-    changes.
+    `varies` is true if it changes while a body turns one way, so that the force must be fitted over each step. `motor_share` is
+    the part of it that acts on the motor if motor and hub are two bodies, `reads` the signals that it changes.
     """
 
     kind: int

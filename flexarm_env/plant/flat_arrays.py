@@ -18,16 +18,16 @@ from flexarm_env.plant.structure import DRIVERS, HUB_TORQUE, MOTOR_TORQUE, Linea
 RESPONSE = 5
 #: Longest steps [s] over which a force that depends on the motion is fitted by one quartic; with drag, by a parabola.
 LONGEST_STEP, LONGEST_STEP_WITH_DRAG = 5e-3, 2.5e-3
-#: Parts of a sample in each of which a drive that is on its way to the next command is taken by its mean.
+#: Parts of a sample over each of which a ramp of the drive is replaced by its mean.
 RAMP_PARTS = 4
-#: Change of a force [Nm, N/m] below which the sweeps that fit it stop.
+#: Change of a force [Nm, N/m] at which the sweeps of its fit end.
 TOLERANCE = 1e-12
 
 
 def pack(
     structure: Structure, model: LinearModel, laws: Sequence[Sequence[ActiveLaw]], interval: float
 ) -> tuple[Matrix, NDArray[np.int64], int]:
-    """Return (d, n, whole samples of delay) for the kernel; the blocks' responses are still to be filled in.
+    """Pack (d, n, whole samples of delay) for the kernel, without the tables that `prepare` writes.
 
     Args:
         structure: the linear quantities, of one arm or of stacked ones.
@@ -114,13 +114,13 @@ def _constants(structure: Structure, laws: Sequence[Sequence[ActiveLaw]], interv
 
 
 def _points(model: LinearModel, active: Sequence[ActiveLaw]) -> NDArray[np.intp]:
-    """Places among the forces on the beam of those that laws ask for: the drag at each point, and weight, the last."""
+    """Return the places of the forces on the beam that laws give: the drag at each point, and weight, the last."""
     ports, last = {law.port for law in active}, model.beam_force.shape[-1] - 1
     return np.arange(0 if "drag" in ports else last, last + 1 if "weight" in ports else last)
 
 
 def _size_of_tables(n: NDArray[np.int64]) -> int:
-    """Numbers of a mode's tables of slides, or, with drag, of what forces move."""
+    """Count the numbers of a mode's tables of event-free steps or, with drag, of the forces' influence."""
     if n[at.POINTS]:
         return int(12 * (2 * n[at.BODIES] + n[at.POINTS]) * (n[at.BODIES] + n[at.POINTS]))
     levels = (DEPTH + 1 if n[at.VARYING] else 1) if n[at.VARYING] or n[at.BODIES] == 2 else 0
@@ -183,7 +183,7 @@ def _wide(matrix: Matrix, blocks: int) -> Matrix:
 
 
 def _weights(rows: Matrix, c0: Matrix, c1: Matrix) -> Matrix:
-    """How much each block's amplitude can bend each row's value: what curvature_bound sums up."""
+    """Return the weights of the blocks' amplitudes in the bound of each row's curvature."""
     a = rows[..., 0::2] - rows[..., 1::2] * c1[..., None, :]
     weights: Matrix = np.sqrt(a**2 + rows[..., 1::2] ** 2 * c0[..., None, :])
     return weights

@@ -1,4 +1,4 @@
-"""Block-diagonal form of the linear part, one for each way in which hub, motor and gears can be held."""
+"""Block-diagonal form of the linear part, one for each mode of hub, motor and gears."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Mode:
     modal: Matrix  # (2 blocks, states): z from [q, q̇, e]
     forcing: Matrix  # (2 blocks, drivers)
     beam_forcing: Matrix  # (2 blocks, forces on the beam)
-    hold: Matrix  # (bodies, 2 blocks): torque that friction must resist, on a body that stands
+    hold: Matrix  # (bodies, 2 blocks): torque that friction must resist, on a body at rest
     hold_drivers: Matrix  # (bodies, drivers)
     hold_beam: Matrix  # (bodies, forces on the beam)
 
@@ -120,11 +120,11 @@ def _resisted(model: LinearModel, stiffness: Matrix, damping: Matrix, inertial: 
 
 
 def complete(free: Mode, held: Mode, body: int, speed: int) -> None:
-    """Write into a mode what would hold a body that stands for a moment.
+    """Add to a mode the torque that would hold a free body at zero speed.
 
     Args:
-        free: the mode, in which the body is free.
-        held: the one that holds it, and the same others.
+        free: the mode with the body free.
+        held: the mode with the body held and all else equal.
         body: 0 hub, 1 motor.
         speed: the row of the body's speed in [q, q̇, e], which is zero.
     """
@@ -138,7 +138,7 @@ def complete(free: Mode, held: Mode, body: int, speed: int) -> None:
 
 
 def _clean(product: Matrix, scale: Matrix) -> Matrix:
-    """Zero what is only rounding, so that a coordinate that nothing depends on is seen as such."""
+    """Set rounding errors to zero, so that a coordinate on which nothing depends is recognised."""
     if not product.size:
         return product
     largest = np.abs(scale).max(axis=(-2, -1), keepdims=True)
@@ -147,7 +147,7 @@ def _clean(product: Matrix, scale: Matrix) -> Matrix:
 
 @dataclass(frozen=True)
 class _Frame:
-    """What a mode's coordinates are, whatever the arm's numbers."""
+    """Coordinates of a mode, which do not depend on the arm's numbers."""
 
     free: Matrix  # (coordinates, positions): coordinates from the mode's positions
     held: list[tuple[int, int]]  # driver and coordinate of each held body
