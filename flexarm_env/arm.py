@@ -17,7 +17,7 @@ from flexarm_env.sensors import Sensor, known_sensors
 
 if TYPE_CHECKING:
     from flexarm_env.linear import LinearArm
-    from flexarm_env.plant.flat_arrays import ActiveLaw
+    from flexarm_env.plant.active_laws import ActiveLaw
     from flexarm_env.plant.plant import Plant
     from flexarm_env.plant.structure import Structure
 
@@ -289,7 +289,7 @@ class Arm(Shown):
 
     def laws(self) -> list[ActiveLaw]:
         """List the nonlinear laws of all effects that are present, with their parameters."""
-        from flexarm_env.plant.flat_arrays import ActiveLaw
+        from flexarm_env.plant.active_laws import ActiveLaw
 
         active = []
         yields = any(self.known[name].port("presliding") for name, _ in self.present())

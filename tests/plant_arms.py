@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from flexarm_env.plant.flat_arrays import ActiveLaw
+from flexarm_env.plant.active_laws import ActiveLaw
 from flexarm_env.plant.plant import Plant
 from flexarm_env.plant.structure import Structure
 from flexarm_env.sensors.arm_angle import ArmAngle

@@ -12,10 +12,10 @@ from flexarm_env.plant.readings import measure
 from flexarm_env.plant.replay import is_lost
 from flexarm_env.plant.stick_slip import is_stuck, record
 
-#: Columns of the truth after the readings: hub angle and speed, tip deflection, whether the hub sticks, whether all is lost.
+#: Columns of the truth after the readings: hub angle and speed, tip deflection, whether the hub sticks, whether it diverged.
 TRUTH = 5
 
-# --- places: where each quantity of a batch stands in its array, and how far one arm's is from the next
+# --- places of a batch's quantities in its array, and distances from one arm's to the next
 AT_CONSTANTS, CONSTANTS_EACH, AT_STATES, STATE_EACH, AT_COMMANDS, AT_PUSHES, AT_LOOKS, AT_SCRATCH, SCRATCH_EACH = range(9)
 
 
@@ -45,11 +45,11 @@ def look_batch(arena: Numbers, n: Places, places: Places, first: int, last: int)
 
 @njit
 def step_batch(arena: Numbers, n: Places, places: Places, first: int, last: int, part: int) -> None:
-    """Move arms first to last - 1 on by one sample and look at them.
+    """Advance arms first to last - 1 by one sample and write their readings and truth.
 
-    All numbers lie in one array, since numba pays for each array at each call; `places` says where in it. Every arm has the
-    layout n, and its own constants unless CONSTANTS_EACH is 0. Its command goes through the drive; its push is added to
-    what the drive lets through. `part` names the scratch of a thread.
+    All numbers lie in one array, at `places`, since numba pays for each array at each call. Every arm has the layout n, and
+    its own constants unless CONSTANTS_EACH is 0. Its push is added to the drive's output for its command. `part` is the
+    number of a thread, which has a scratch of its own.
     """
     scratch = arena[places[AT_SCRATCH] + part * places[SCRATCH_EACH] :]
     for arm in range(first, last):

@@ -3,7 +3,7 @@
 A block is (p, P) with ṗ = P + f₁, Ṗ = −c₀ p − c₁ P + f₂: a vibration mode, or a real eigenvalue together with its
 integral. It stays smooth where a rigid mode loses its damping and an eigenvector basis would break down.
 
-Arms whose eigenvalues are real and complex in the same places are worked on together. What an arm gets does not depend
+Arms with real and complex eigenvalues in the same places are decomposed together. The result of an arm does not depend
 on its company, to the last bit.
 """
 
@@ -56,7 +56,7 @@ def blocks_of(dynamics: Matrix) -> tuple[Matrix, Matrix, Matrix, Matrix]:
 
 @lru_cache(maxsize=64)
 def _blocks_of_one(dynamics: bytes, size: int) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-    """Return the blocks of one arm: fits try many that differ in what leaves its dynamics alone."""
+    """Return the blocks of one arm, cached: fits try many arms with the same dynamics."""
     c0, c1, v, w = (stack[0] for stack in blocks_of(np.frombuffer(dynamics).reshape(1, size, size)))
     for kept in (c0, c1, v, w):
         kept.flags.writeable = False
@@ -74,7 +74,7 @@ def _alike(rows: NDArray[np.bool_] | NDArray[np.int8]) -> Iterator[Places]:
 
 
 def _decompositions(every: Matrix) -> Iterator[tuple[Places, Matrix, Matrix, Matrix, Matrix]]:
-    """Yield which arms (n,), and their c0, c1, V, W, of arms (arms, states, states) that decompose in the same way."""
+    """Yield the numbers (n,) and c0, c1, V, W of arms (arms, states, states), group by group of equal structure."""
     moves = np.asarray(every.any(axis=1))
     for chosen in _alike(moves):
         cyclic, inner = np.flatnonzero(~moves[chosen[0]]), np.flatnonzero(moves[chosen[0]])
@@ -91,7 +91,7 @@ def _decompositions(every: Matrix) -> Iterator[tuple[Places, Matrix, Matrix, Mat
 def _columns(
     values: Complex, vectors: Complex, rates: Matrix, cyclic: Places, inner: Places
 ) -> tuple[Matrix, Matrix, Matrix, Places, Places]:
-    """Return c0, c1, V and which blocks are real and which vibrate, from the eigenvectors of the inner states.
+    """Return c0, c1, V and the numbers of the real and of the vibrating blocks, from the eigenvectors of the inner states.
 
     Args:
         values: (n, inner).
@@ -151,9 +151,9 @@ def _lack(cover: Matrix) -> NDArray[np.bool_]:
 def _with_inverse(
     c0: Matrix, c1: Matrix, v: Matrix, real: Places, vibrating: Places, cyclic: Places, inner: Places, lacks: bool
 ) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-    """Return c0, c1, V and its inverse W; `lacks` says that the real modes do not reach all cyclic places."""
+    """Return c0, c1, V and its inverse W; with `lacks` the real modes do not span all cyclic places."""
     used = np.sort(np.concatenate([2 * real + 1, 2 * vibrating, 2 * vibrating + 1]))
-    if lacks:  # then each keeps a block of its own, which never moves
+    if lacks:  # then each has a block of its own, which never moves
         own = np.zeros((len(v), v.shape[1], 2 * len(cyclic)))
         own[:, cyclic, 2 * np.arange(len(cyclic))] = 1.0
         real = np.concatenate([real, c0.shape[1] + np.arange(len(cyclic))])

@@ -4,8 +4,8 @@ The text of the kernel and of every law goes into one generated module, named by
 across processes, and a change in any of the sources gives another module, never yesterday's physics.
 
 An index in a kernel counts from the front. numba would give a negative one Python's meaning, with a test and a
-selection at each access (30 % of the time of a step); the generated module makes every computed index unsigned, which
-it takes as it is.
+selection at each access (30 % of the time of a step); the generated module makes every computed index unsigned, so
+numba adds neither.
 
 A call hands over seven numbers for each array. Kernels that the way through a step calls from one place or two are
 therefore `forceinline` (a quarter of the time of a step with an event); inlined everywhere they would make it slower.
@@ -28,7 +28,7 @@ import numba
 from flexarm_env.generated import generated_module, without_imports
 from flexarm_env.plant.ports import DEFAULTS, PORT_ARGUMENTS
 
-#: What the kernels' annotations stand for. Without a signature numba compiles a kernel for every literal it is given.
+#: Types of the kernels' annotations. Without a signature numba compiles a kernel for every literal that it is given.
 TYPES = {
     "float": "float64",
     "int": "int64",
@@ -38,7 +38,7 @@ TYPES = {
     "Samples": "float64[:, ::1]",
     "Gains": "float64[:, :, ::1]",
 }
-#: What the generated module imports.
+#: Imports of the generated module.
 IMPORTS = """import math
 from collections import namedtuple
 
@@ -46,14 +46,14 @@ import numpy as np
 from numba import boolean, float64, int64, njit, uint64
 from numba.core.types import BaseTuple
 """
-#: Added to a bundle's name, what the generated module calls its type.
+#: Suffix of a bundle's name for its type in the generated module.
 TYPE = "Type"
-#: Kernels own no array: Python holds all that they are given. So none needs numba's counts of references (_nrt), which are
-#: atomic, take as long as the physics of a quiet step, and which threads would wrest from each other at every arm.
+#: Kernels own no array: Python holds all arrays. So none needs numba's counts of references (_nrt), which are atomic, take as
+#: long as the physics of a quiet step, and would be contended by threads at every arm.
 OPTIONS: dict[str, bool | str] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False}
 NO_WRAPPERS: dict[str, bool | str] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
-#: Kernels that Python calls. The others get no wrapper to be called by: half the work of compiling a small one.
+#: Kernels that Python calls. The others get no wrapper, which is half the work of compiling a small one.
 ENTRANCES = (
     "scratch_size",
     "prepare",
@@ -88,7 +88,7 @@ FILES = (
     "batch.py",
 )
 
-#: What kernels write before the places of layout.py, whose names stand bare in the generated module.
+#: Prefix of layout.py's places in the kernels; the generated module has their bare names.
 PREFIX = re.compile(r"\bat\.(?=[A-Z])")
 
 Law = tuple[str, str, Callable[..., float], tuple[str, ...]]  # port, effect, function, names of its parameters
@@ -131,10 +131,10 @@ class _Compiled(ast.NodeTransformer):
         decorator = node.decorator_list[0]
         options = list(decorator.keywords) if isinstance(decorator, ast.Call) else []
         given = [option.arg for option in options]
-        if "cache" in given:  # a law, which takes its types from the kernel that calls it
+        if "cache" in given:  # a law: its types come from the kernel that calls it
             return node
         self.generic_visit(node)
-        signature = [_signature(node)]  # which takes the annotations off, too
+        signature = [_signature(node)]  # this removes the annotations, too
         every = OPTIONS if node.name in ENTRANCES else OPTIONS | NO_WRAPPERS
         options += [ast.keyword(name, ast.Constant(value)) for name, value in every.items()]
         signatures = [] if "inline" in given else signature
@@ -178,7 +178,7 @@ def _unsigned(index: ast.expr) -> ast.expr:
 
 
 def source_of(laws: Sequence[Law]) -> str:
-    """Text of the kernel with these laws in its switches, before it is given signatures and unsigned indices."""
+    """Return the text of the kernel with these laws in its switches, before signatures and unsigned indices are added."""
     here = Path(__file__).parent
     parts = [IMPORTS, _plain(here / "layout.py")]
     parts += [_switch(port, laws) for port in PORT_ARGUMENTS]
@@ -191,7 +191,7 @@ def compose(laws: Sequence[Law]) -> ModuleType:
     """Return the compiled kernel for a catalogue's laws, from the cache where it has been compiled before.
 
     Args:
-        laws: all laws of the catalogue; an arm then names by `kind`, its index here, those that are active.
+        laws: all laws of the catalogue; `kind` is a law's index here.
     """
     return _compose(tuple(laws))
 

@@ -1,4 +1,4 @@
-"""One control step of the arm: the delay, then the new command, in glides, slides and substeps."""
+"""One control step of the arm: the command before the delay's end, then the new one, in the longest steps that hold no event."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from flexarm_env.plant.substep import UNTABULATED, substep, substep_scratch
 
 @njit
 def scratch_size(n: Places) -> int:
-    """How many numbers of scratch the kernel needs."""
+    """Count the numbers of scratch of the kernel."""
     return substep_scratch(n) + (table_size(n) if n[at.VARYING] else 0)
 
 
 @njit(forceinline=True)
 def drive_output(d: Numbers, n: Places, s: Numbers, command: float) -> float:
-    """Return what the drive makes of a command, and remember it."""
+    """Return the drive's output [A or V] for a command, and store it."""
     place, before = n[at.DRIVE_LAWS], s[at.COMMAND]
     for j in range(n[place]):
         command = drive_law(n[place + 1 + 2 * j], command, before, d[at.INTERVAL], d, n[place + 2 + 2 * j])
@@ -33,7 +33,7 @@ def drive_output(d: Numbers, n: Places, s: Numbers, command: float) -> float:
 
 @njit(forceinline=True)
 def mean_during_ramp(d: Numbers, n: Places, before: float, command: float, start: float, end: float) -> float:
-    """Return the mean of what a drive gives from start to end [s] after it was told to leave one command for the next."""
+    """Return the drive's mean output from start to end [s] after the command changed, while it ramps to the new one."""
     place = n[at.RAMP_LAWS]
     for j in range(n[place]):
         command = ramp_law(n[place + 1 + 2 * j], command, before, start, end, d, n[place + 2 + 2 * j])
@@ -42,13 +42,13 @@ def mean_during_ramp(d: Numbers, n: Places, before: float, command: float, start
 
 @njit
 def hub_rests(n: Places, mode: int) -> bool:
-    """Whether the hub of an arm of one body is held and no force varies for that."""
+    """Whether the hub of an arm of one body is held, so that no force varies with its motion."""
     return n[at.BODIES] == 1 and mode == 1 and n[n[at.TORQUE_LAWS]] == 0
 
 
 @njit
 def halving_steps(a: Arrays, command: float, t: float, slot: int) -> None:
-    """Move the arm on by t [s] in slides, halved where the force varies fast or an event may fall in, else substeps."""
+    """Advance the arm by t [s] in event-free steps, halved where a force changes fast or an event may occur, then substeps."""
     d, n, s, w = a.d, a.n, a.s, a.w
     whole, done, level = 1 << DEPTH, 0, 0
     own, own_mode, own_level = step_table(n, w, substep_scratch(n)), UNTABULATED, 0
@@ -76,7 +76,7 @@ def halving_steps(a: Arrays, command: float, t: float, slot: int) -> None:
 
 @njit(forceinline=True)
 def move(a: Arrays, command: float, t: float, slot: int) -> None:
-    """Move the arm on by t [s] under a held command; `slot` names the tables for exactly t."""
+    """Advance the arm by t [s] under a held command; `slot` is the number of the tables for exactly t."""
     n = a.n
     if n[at.VARYING] and not n[at.POINTS]:
         halving_steps(a, command, t, slot)
@@ -89,7 +89,7 @@ def move(a: Arrays, command: float, t: float, slot: int) -> None:
 
 @njit
 def control_step(d: Numbers, n: Places, s: Numbers, before: float, command: float, w: Numbers) -> None:
-    """Move the arm on by one sample: the last command acts until the delay is over, then the new one."""
+    """Advance the arm by one sample: the last command acts until the delay is over, then the new one."""
     a = Arrays(d, n, s, w)
     for _ in range(n[at.EARLY_SUBSTEPS]):
         if n[at.STEADY_BODIES] != 1 or not quiet_step(a, before, d[at.EARLY_LENGTH], 0):
@@ -102,7 +102,7 @@ def control_step(d: Numbers, n: Places, s: Numbers, before: float, command: floa
 
 @njit(inline="always")
 def uneven_step(a: Arrays, before: float, command: float, interval: float) -> None:
-    """Like control_step, over an interval that is not the tabulated one."""
+    """Advance the arm as control_step does, over an interval [s] without tables."""
     d, n = a.d, a.n
     early = min(d[at.EARLY_LENGTH] * n[at.EARLY_SUBSTEPS], interval)
     late = interval - early

@@ -1,4 +1,4 @@
-"""When a row of the blocks first falls to zero, on the exact motion."""
+"""The first zero of a quantity along the exact motion."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from flexarm_env.plant.bundles import Line, Motion, Point
 from flexarm_env.plant.propagate import inlined_dot
 from flexarm_env.plant.trial_motion import value_at
 
-#: Shortest interval [s] that is still halved.
+#: Shortest interval [s] that is halved.
 SMALLEST_INTERVAL = 1e-13
-#: By how much an interval that is not halved any more grows with each one looked at.
+#: Growth of that shortest interval per interval searched.
 COARSER = 1.02
 
 
 @njit(forceinline=True)
 def amplitudes(m: Motion, t: float) -> None:
-    """Write how large each block's √(c₀ ṗ² + Ṗ²) can get within t, to w at `sizes`: what its second derivative can reach.
+    """Bound each block's √(c₀ ṗ² + Ṗ²) within t [s], the measure of its second derivative; written to w at `sizes`.
 
-    No passive block lets it grow while the force stays; what a change of the force may add is added. After it, in
-    the same measure, what the fourth derivative can reach: (√c₀ + |c₁|)² times as much, and what the change adds.
+    Under a constant force it does not grow in a passive block; the effect of a change of the force is added. Behind it, in the
+    same measure, stand bounds of the fourth derivative: (√c₀ + |c₁|)² times as large, and the effect of the change.
     """
     d, s, w, blocks = m.d, m.s, m.w, m.blocks.number
     for k in range(blocks):
@@ -48,7 +48,7 @@ def amplitudes(m: Motion, t: float) -> None:
 
 @njit(forceinline=True)
 def curvature_bound(m: Motion, line: Line, t: float) -> float:
-    """Bound of |d²(row · z)/dt²| over the next t seconds, from the amplitudes."""
+    """Bound |d²(row · z)/dt²| over the next t [s], from the amplitudes."""
     w, blocks = m.w, m.blocks.number
     total = inlined_dot(m.d, line.weight, w, m.sizes, blocks)
     if m.blocks.varying:
@@ -60,9 +60,9 @@ def curvature_bound(m: Motion, line: Line, t: float) -> float:
 
 @njit
 def chord_error(c0: float, c1: float, length: float) -> float:
-    """Return how far a block's part of a row strays from its chord over a length of time, per bound of its curvature.
+    """Bound the error of the chord of a block's part of a row over a time [s], per unit of the bound on its curvature.
 
-    Whichever is less: what that bound allows, or, for a fast block, twice the size of its vibration.
+    The smaller of two bounds: by the curvature, and, for a fast block, by twice the size of its vibration.
     """
     largest = 0.125 * length * length
     if c0 > 0.0:
@@ -72,29 +72,32 @@ def chord_error(c0: float, c1: float, length: float) -> float:
 
 @njit(forceinline=True)
 def proves(low: Point, high: Point, second: float, fourth: float) -> tuple[bool, bool]:
-    """Return (no root, at most one root) as far as ends and bounds of two derivatives prove it over an interval.
+    """Prove that an interval holds no root, or at most one, from its ends and the bounds of two derivatives.
 
-    Either derivative's bound limits how far the value strays from its chord, or from the cubic through both ends
-    (error of Hermite's interpolation), whose Bézier points bound it.
+    The second derivative bounds the error of the chord. The fourth bounds that of the cubic through both ends (error of Hermite
+    interpolation), and the cubic's Bézier points bound the cubic.
+
+    Returns:
+        (no root, at most one root).
     """
     width = high.t - low.t
     bend = 0.125 * width * width * second
     if low.value > bend and high.value > bend:
         return True, False
     inner_low, inner_high = low.value + width * low.rate / 3.0, high.value - width * high.rate / 3.0
-    chord_error = width**4 * fourth / 384.0
-    if min(low.value, inner_low, inner_high, high.value) > chord_error:
+    error = width**4 * fourth / 384.0
+    if min(low.value, inner_low, inner_high, high.value) > error:
         return True, False
     if max(abs(low.rate), abs(high.rate)) > width * second:
         return False, True
-    middle, chord_error = 3.0 * (inner_high - inner_low) / width, width**3 * fourth / 124.0
-    rising = min(low.rate, middle, high.rate) > chord_error
-    return False, rising or max(low.rate, middle, high.rate) < -chord_error
+    middle, error = 3.0 * (inner_high - inner_low) / width, width**3 * fourth / 124.0
+    rising = min(low.rate, middle, high.rate) > error
+    return False, rising or max(low.rate, middle, high.rate) < -error
 
 
 @njit(forceinline=True)
 def cubic_root(low: Point, high: Point) -> float:
-    """Return how far after `low` the cubic through both ends, above zero at `low` and below at `high`, is about zero."""
+    """Return the time after `low` of the zero of the cubic through both ends, above zero at `low` and below at `high`."""
     width = high.t - low.t
     slope = (high.value - low.value) / width
     c3 = (low.rate + high.rate - 2.0 * slope) / (width * width)
@@ -112,17 +115,17 @@ def cubic_root(low: Point, high: Point) -> float:
 
 @njit(forceinline=True)
 def point_at(m: Motion, line: Line, t: float) -> Point:
-    """Return value and rate at time t; the copy of the motion is brought there."""
+    """Return value and rate at time t, to which the trial motion is advanced."""
     value, rate, _ = value_at(m, line, t)
     return Point(t, value, rate)
 
 
 @njit(forceinline=True)
 def polished_root(m: Motion, line: Line, low: Point, high: Point, end: float, second: float, fourth: float) -> float:
-    """Return the one root between two points: by Halley's method from the cubic's root, kept between the ends."""
+    """Return the only root between two points: Halley's method from the cubic's root, kept between the ends."""
     earliest, latest = low.t, high.t
     t = low.t + cubic_root(low, high)
-    third = math.sqrt(second * fourth)  # of sums of squares, so that it is a bound, too
+    third = math.sqrt(second * fourth)  # a bound, too: the second and fourth are sums of squares
     for _ in range(60):
         value, rate, bend = value_at(m, line, t)
         if value > 0.0:
@@ -143,16 +146,16 @@ def polished_root(m: Motion, line: Line, low: Point, high: Point, end: float, se
 
 @njit(forceinline=True)
 def first_crossing(m: Motion, line: Line, start: Point, end: Point, second: float, fourth: float) -> float:
-    """Return when the value first falls to zero after the start and up to the end, or −1.
+    """Return the first time in (start, end] at which the value falls to zero, or −1.
 
-    Intervals are halved until bounds of the second and fourth derivatives prove that a half holds no root, or one only:
-    none is missed.
+    Intervals are halved until the bounds of the second and fourth derivatives prove that a part holds no root or only one, so no
+    root is missed.
     """
     low, high = start, end
     smallest = SMALLEST_INTERVAL + 1e-12 * end.t
     while True:
         width = high.t - low.t
-        smallest *= COARSER  # so that a vibration of absurd frequency ends in a coarse answer, not in none
+        smallest *= COARSER  # so that the search ends under a vibration of absurd frequency, with a coarse answer
         clear, monotone = proves(low, high, second, fourth)
         if not (clear or monotone) and width > smallest:
             high = point_at(m, line, 0.5 * (low.t + high.t))

@@ -1,4 +1,4 @@
-"""A step without events of any arm without drag: two bodies, gears, and forces that vary with the motion."""
+"""An event-free step of any arm without drag: two bodies, gears, and forces that vary with the motion."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from flexarm_env.plant.stick_slip import (
     static_budget,
 )
 
-#: Speed [rad/s] below which it does not matter to friction that yields when it turns round.
+#: Speed [rad/s] below which the moment of reversal does not matter to presliding friction.
 QUIET = 1e-4
 
 
 class Chord(NamedTuple):
-    """A tested row before and after a step, and how far it may stray from the line between the two."""
+    """A tested row before and after a step, and a bound of its distance from the line between the two."""
 
     before: float
     after: float
@@ -38,7 +38,7 @@ class Chord(NamedTuple):
 
 @njit(forceinline=True)
 def start_forces(a: Arrays, places: StepScratch) -> bool:
-    """Write the motion at the start, if any law asks, and the forces; return False if a body turns against its direction."""
+    """Write motion and forces at the start; return False if a body turns against friction's direction."""
     d, n, s, w = a.d, a.n, a.s, a.w
     mode, bodies, size = int(s[at.MODE]), n[at.BODIES], 2 * n[at.BLOCKS]
     here, start, varying = record(n, mode), places.start, n[at.VARYING] > 0
@@ -78,7 +78,7 @@ def forcing_of(d: Numbers, row: int, w: Numbers, inputs: int, coupled: bool) -> 
 
 @njit(forceinline=True)
 def move_blocks(a: Arrays, moves: bool, table: StepTable, places: StepScratch) -> None:
-    """Write where each block gets to by the end of the step, and how far it strays from its chord, to w."""
+    """Write each block's state at the end of the step, and the bound of its chord error, to w."""
     d, n, s, w, tab = a.d, a.n, a.s, a.w, table.data
     here, drivers, changes = record(n, int(s[at.MODE])), n[at.DRIVERS], n[at.BODIES] * ORDER
     coupled = n[at.COUPLED] > 0
@@ -104,7 +104,7 @@ def move_blocks(a: Arrays, moves: bool, table: StepTable, places: StepScratch) -
 
 @njit(forceinline=True)
 def chord_of(a: Arrays, row: int, places: StepScratch) -> Chord:
-    """Return the chord of the row that tells of a body's event, or (last) of the gears'."""
+    """Return the chord of the row that is tested for a body's event, or (last) for the gears'."""
     d, s, w = a.d, a.s, a.w
     place, weight = tested_row(a.n, int(s[at.MODE]), row)
     before, after, bend = 0.0, 0.0, 0.0
@@ -118,7 +118,7 @@ def chord_of(a: Arrays, row: int, places: StepScratch) -> Chord:
 
 @njit(forceinline=True)
 def body_keeps_state(a: Arrays, body: int, moves: bool, table: StepTable, places: StepScratch) -> bool:
-    """Whether a body surely goes on turning or being held over the step."""
+    """Whether a body certainly keeps turning, or stays held, over the step."""
     d, n, s, w = a.d, a.n, a.s, a.w
     if not has_friction(d, n, body):
         return True
@@ -143,7 +143,7 @@ def body_keeps_state(a: Arrays, body: int, moves: bool, table: StepTable, places
 
 @njit(forceinline=True)
 def gears_keep_touching(a: Arrays, moves: bool, table: StepTable, places: StepScratch) -> bool:
-    """Whether gears with play surely go on touching over the step."""
+    """Whether gears with play certainly keep touching over the step."""
     s, bodies, side = a.s, a.n[at.BODIES], a.s[at.GEAR_SIDE]
     chord = chord_of(a, bodies, places)
     held, bend = s[at.HELD_MOTOR] - s[at.HELD_HUB], chord.bend  # held angles of free bodies are 0
@@ -154,9 +154,9 @@ def gears_keep_touching(a: Arrays, moves: bool, table: StepTable, places: StepSc
 
 @njit
 def event_free_step(a: Arrays, command: float, length: float, last: bool, table: StepTable) -> bool:
-    """Move the arm on by a step with a table and return True, if it is sure that no event falls in it.
+    """Advance the arm by a step with a table and return True, if certainly no event falls in it.
 
-    `last` says that the step cannot be halved.
+    With `last` the step cannot be halved.
     """
     d, n, s, w = a.d, a.n, a.s, a.w
     mode, places = int(s[at.MODE]), step_places(n)

@@ -1,7 +1,7 @@
-"""What a step without events takes that does not change from step to step: how blocks answer, how each quantity moves.
+"""Tables of an event-free step: the blocks' responses, and the motion of each quantity that enters a law.
 
-Laws ask for few quantities, so that their sweeps are few sums: tables say how each quantity moves without the change of
-force, and by each of that change's coefficients.
+Few quantities enter the laws, so a sweep takes few sums: tables give the motion of each quantity under constant forces, and its
+change by each coefficient of the forces' change.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from flexarm_env.plant.stick_slip import is_stuck, record
 #: Lobatto's nodes after the start; the change of force over a step is a polynomial of this order.
 NODES = np.array([0.5 - math.sqrt(3.0 / 28.0), 0.5, 0.5 + math.sqrt(3.0 / 28.0), 1.0])
 ORDER = 4
-#: A step is halved so often at most.
+#: Largest number of times that a step is halved.
 DEPTH = 3
-#: Terms of the series of a short time; numbers of a block in a table: C, S, R₀, stray.
+#: Terms of the series of a short time; numbers of a block in a table: C, S, R₀, chord error.
 TERMS = 12
 PER_BLOCK = 4
 
 
 @njit
 def long_response(c0: float, c1: float, t: float, r: Numbers, first: int) -> None:
-    """Write C, S, R₀ to R₄ of one block after time t [s] to r: as block_response does, for higher orders."""
+    """Write C, S, R₀ to R₄ of one block after time t [s] to r: block_response to higher orders."""
     doublings = 0
     while abs(c0) * t * t + abs(c1) * t > LONG_ARGUMENT:
         t *= 0.5
@@ -58,12 +58,12 @@ def long_response(c0: float, c1: float, t: float, r: Numbers, first: int) -> Non
 
 
 class StepTable(NamedTuple):
-    """Table of a step without events: its array and the places in it of its parts.
+    """Table of an event-free step: its array and the places in it of its parts.
 
-    `responses`: C, S, R₀, stray of each block. `bends`: how far each tested row strays from its chord per variation of the
-    force on each body. `work`: room for one response. If forces vary, for each node and quantity (angles, then speeds),
-    `rows`: its row on z at the start, `drives`: what each driver adds, `shifts`: what each coefficient of the force's change
-    adds. `ends`: by block, what these add to z in the end.
+    `responses`: C, S, R₀, chord error of each block. `bends`: chord error of each tested row per variation of the force on each
+    body. `work`: room for one response. If forces vary, for each node and quantity (angles, then speeds), `rows`: its row on z at
+    the start, `drives`: its change by each driver, `shifts`: its change by each coefficient of the forces' change. `ends`: by
+    block, the change of z at the end by these coefficients.
     """
 
     data: Numbers
@@ -78,7 +78,7 @@ class StepTable(NamedTuple):
 
 @njit
 def table_size(n: Places) -> int:
-    """How many numbers the table of a step takes (see StepTable)."""
+    """Count the numbers of the table of a step (see StepTable)."""
     blocks, bodies = n[at.BLOCKS], n[at.BODIES]
     size = PER_BLOCK * blocks + (bodies + 1) * bodies + 7
     if n[at.VARYING]:
@@ -102,20 +102,20 @@ def step_table(n: Places, data: Numbers, first: int) -> StepTable:
 
 @njit
 def has_step_tables(n: Places) -> bool:
-    """Whether the arm has tables for slide: where a glide would not do, and no drag varies along the beam."""
+    """Whether the arm has tables of event-free steps: a quiet step does not cover it, and no drag varies along the beam."""
     return n[at.POINTS] == 0 and (n[at.VARYING] > 0 or n[at.BODIES] == 2)
 
 
 @njit(forceinline=True)
 def tabulated_step(d: Numbers, n: Places, mode: int, slot: int, level: int) -> StepTable:
-    """Return the table in d of a substep, halved so often (see glide.prepare)."""
+    """Return the table in d of a substep that is halved `level` times."""
     level += slot * (DEPTH + 1 if n[at.VARYING] else 1)
     return step_table(n, d, record(n, mode) + n[at.STEP_TABLES] + level * table_size(n))
 
 
 @njit
 def tested_row(n: Places, mode: int, row: int) -> tuple[int, int]:
-    """Return the places of the row that tells of a body's event, or (last) of the gears', and of its weights."""
+    """Return the places of the row that is tested for a body's event, or (last) for the gears', and of its weights."""
     here, blocks = record(n, mode), n[at.BLOCKS]
     if row == n[at.BODIES]:
         return here + n[at.MESH], here + n[at.MESH_WEIGHT]
@@ -126,7 +126,7 @@ def tested_row(n: Places, mode: int, row: int) -> tuple[int, int]:
 
 @njit
 def bend_by_force(d: Numbers, n: Places, mode: int, row: int, body: int, length: float) -> float:
-    """How far a tested row strays from its chord, per variation of the force on a body."""
+    """Bound the chord error of a tested row per variation of the force on a body."""
     here, blocks = record(n, mode), n[at.BLOCKS]
     place, weight = tested_row(n, mode, row)
     column = here + n[at.FORCE_COLUMNS] + body * 2 * blocks
@@ -142,7 +142,7 @@ def bend_by_force(d: Numbers, n: Places, mode: int, row: int, body: int, length:
 
 @njit(forceinline=True)
 def tabulate_quantities(d: Numbers, n: Places, mode: int, k: int, node: int, length: float, table: StepTable) -> None:
-    """Write what block k contributes to each quantity at a node of a step, from the block's response then."""
+    """Add the part of block k in each quantity at a node of a step, from the block's response there."""
     here, blocks, bodies, drivers, to = record(n, mode), n[at.BLOCKS], n[at.BODIES], n[at.DRIVERS], table.data
     size, quantities = 2 * blocks, 2 * bodies
     c0, c1 = d[here + n[at.C0] + k], d[here + n[at.C1] + k]
@@ -175,7 +175,7 @@ def tabulate_quantities(d: Numbers, n: Places, mode: int, k: int, node: int, len
 
 @njit(forceinline=True)
 def tabulate_end(d: Numbers, n: Places, mode: int, k: int, length: float, table: StepTable) -> None:
-    """Write what each coefficient of the force's change adds to block k at the end of a step."""
+    """Write the change of block k at the end of a step by each coefficient of the forces' change."""
     here, bodies, drivers, to = record(n, mode), n[at.BODIES], n[at.DRIVERS], table.data
     c0, c1 = d[here + n[at.C0] + k], d[here + n[at.C1] + k]
     forcing = here + n[at.FORCING] + 2 * k * drivers
@@ -192,7 +192,7 @@ def tabulate_end(d: Numbers, n: Places, mode: int, k: int, length: float, table:
 
 @njit
 def prepare_step_table(d: Numbers, n: Places, mode: int, length: float, table: StepTable) -> None:
-    """Write the table of a step of some length (see StepTable)."""
+    """Write the table of a step of a given length [s] (see StepTable)."""
     here, blocks, bodies, to = record(n, mode), n[at.BLOCKS], n[at.BODIES], table.data
     for row in range(bodies + 1):
         for body in range(bodies):

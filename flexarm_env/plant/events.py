@@ -13,12 +13,12 @@ from flexarm_env.plant.propagate import dot
 from flexarm_env.plant.stick_slip import GEAR_OPEN, applied_offset, has_friction, is_stuck, load_now, record, static_budget
 from flexarm_env.plant.trial_motion import arrive, copy_size, rate_at_end, start_copy
 
-# events: none, a body that stops, a held body that breaks away, gears that part or meet, a moment to look afresh
+# events: none, a body stops, a held body breaks away, gears part or meet, overlapping teeth are clear of each other
 NOTHING, STOP, BREAK, GEARS, AGAIN = 0, 1, 2, 3, 4
 
 
 class Event(NamedTuple):
-    """What happens when, and to which body or on which side."""
+    """An event: its time [s] in the step, its kind, its body (0, 1) or its side (−1, 1)."""
 
     time: float
     kind: int
@@ -27,9 +27,9 @@ class Event(NamedTuple):
 
 @njit
 def crossing_time(m: Motion, line: Line, start: float, end: float, best: float) -> float:
-    """Return when a quantity falls to zero within (start, min(end, best)], or `best`.
+    """Return the time at which a quantity falls to zero within (start, min(end, best)], or `best`.
 
-    The copy of the motion then stands there; its state is kept behind it.
+    The trial motion is advanced to it, and its state then is stored behind the trial motion.
     """
     d, w, size = m.d, m.w, 2 * m.blocks.number
     bound = curvature_bound(m, line, end) + abs(line.o2)
@@ -56,7 +56,7 @@ def crossing_time(m: Motion, line: Line, start: float, end: float, best: float) 
 
 @njit
 def play_edge(d: Numbers, s: Numbers, mode: int, side: float) -> float:
-    """Return what the angles of held bodies and half the gap add to the windup towards a side: teeth touch from 0 up."""
+    """Return the offset [rad] by held angles and half the gap of the windup towards a side; teeth touch where the sum is ≥ 0."""
     held = 0.0
     if is_stuck(mode, 1):
         held += s[at.HELD_MOTOR]
@@ -67,7 +67,7 @@ def play_edge(d: Numbers, s: Numbers, mode: int, side: float) -> float:
 
 @njit
 def gear_event_time(m: Motion, n: Places, start: float, end: float, side: float, best: float) -> float:
-    """Return when gears that touch on `side` part, or open gears meet there; else `best`.
+    """Return the time at which gears that touch on `side` part, or open gears meet there; else `best`.
 
     Teeth push and never pull: they part when their torque, damping included, falls to zero, and push again when it
     rises, or when they meet anew.
@@ -89,7 +89,7 @@ def gear_event_time(m: Motion, n: Places, start: float, end: float, side: float,
 
 @njit
 def overlap_end_time(m: Motion, n: Places, start: float, end: float, side: float, best: float) -> float:
-    """Return when teeth that parted while they overlapped are clear of each other; else `best`."""
+    """Return the time at which teeth that parted while they overlapped are clear of each other; else `best`."""
     d, s, mode = m.d, m.s, int(m.s[at.MODE])
     if not mode & GEAR_OPEN:
         return best
@@ -104,7 +104,7 @@ def overlap_end_time(m: Motion, n: Places, start: float, end: float, side: float
 def breakaway_time(
     a: Arrays, m: Motion, body: int, command: float, coefficients: int, start: float, end: float, best: float
 ) -> float:
-    """Return when a held body breaks away within (start, end], else `best`; −1 if it does at once."""
+    """Return the time at which a held body breaks away within (start, end], else `best`; −1 if at once."""
     d, n, s, w = a.d, a.n, a.s, a.w
     mode, blocks = int(s[at.MODE]), n[at.BLOCKS]
     here = record(n, mode)
@@ -125,7 +125,7 @@ def breakaway_time(
 
 @njit(forceinline=True)
 def motion_of(a: Arrays, places: SubstepScratch) -> Motion:
-    """Return the motion over a substep from the state now, with its copy begun."""
+    """Return the motion over a substep from the present state, with its trial motion at the start."""
     n, here = a.n, record(a.n, int(a.s[at.MODE]))
     blocks = Blocks(here + n[at.C0], here + n[at.C1], n[at.BLOCKS], n[at.VARYING])
     m = Motion(a.d, a.s, a.w, blocks, places.force, places.trial, places.sizes, places.copy)
@@ -137,7 +137,7 @@ def motion_of(a: Arrays, places: SubstepScratch) -> Motion:
 def next_event(a: Arrays, command: float, places: SubstepScratch, start: float, end: float) -> Event:
     """Return the first event within (start, end]; kind NOTHING if there is none.
 
-    If its time is not 0, the state then is left in w at `found`.
+    If its time is not 0, the state at the event is in w at `found`.
     """
     d, n, s = a.d, a.n, a.s
     mode, blocks = int(s[at.MODE]), n[at.BLOCKS]

@@ -1,4 +1,4 @@
-"""Forces that vary with the motion within a step: fitted by parabolas in time (exponential collocation)."""
+"""Forces that vary with the motion over a substep: parabolas in time (exponential collocation of order four)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SWEEPS = 15
 
 @njit(forceinline=True)
 def constant_forcing(a: Arrays, command: float, mode: int, force: int) -> None:
-    """Write what stays over the substep: command, constant torque, gears' side, held angles; nothing changes in time."""
+    """Write the constant part of the force on the blocks: command, constant torque, gears' side, held angles."""
     d, n, s, w = a.d, a.n, a.s, a.w
     row = record(n, mode) + n[at.FORCING]
     for i in range(2 * n[at.BLOCKS]):
@@ -31,7 +31,7 @@ def constant_forcing(a: Arrays, command: float, mode: int, force: int) -> None:
 
 @njit(forceinline=True)
 def add_forces(d: Numbers, n: Places, mode: int, w: Numbers, coefficients: int, force: int) -> None:
-    """Add torque and drag, coefficients of 1, t, t²/2, to the force on the blocks."""
+    """Add torques and drag, given by their coefficients of 1, t, t²/2, to the force on the blocks."""
     count, size = n[at.BODIES] + n[at.POINTS], 2 * n[at.BLOCKS]
     for order in range(3 if n[at.VARYING] else 1):
         column = record(n, mode) + n[at.FORCE_COLUMNS]
@@ -43,7 +43,7 @@ def add_forces(d: Numbers, n: Places, mode: int, w: Numbers, coefficients: int, 
 
 
 class Answer(NamedTuple):
-    """What a force on a block is looked at by: a quantity u p + v P of the block, with the block's c₀ and c₁."""
+    """A quantity u p + v P of a block that a force moves, with the block's c₀ and c₁."""
 
     u: float
     v: float
@@ -52,7 +52,7 @@ class Answer(NamedTuple):
 
 
 class Columns(NamedTuple):
-    """Columns in d: the place of the first, how far each is from the next, how many there are."""
+    """Columns in d: the place of the first, the distance from each to the next, their number."""
 
     first: int
     step: int
@@ -61,7 +61,7 @@ class Columns(NamedTuple):
 
 @njit
 def add_influence(d: Numbers, answer: Answer, table: Segment, columns: Columns, to: Segment) -> None:
-    """Add how far forces 1, t, t²/2 along each column move a quantity of one block, by the time of the table."""
+    """Add the change of a block's quantity by forces 1, t, t²/2 along each column, at the time of the table."""
     u, v, c0, c1 = answer.u, answer.v, answer.c0, answer.c1
     out = to.first
     for order in range(3):
@@ -77,7 +77,7 @@ def add_influence(d: Numbers, answer: Answer, table: Segment, columns: Columns, 
 
 @njit
 def force_influence(d: Numbers, n: Places, mode: int, table: Segment, to: Segment) -> None:
-    """Write how each force (order by order) moves each quantity of read_motion, by the time of the table."""
+    """Write the change of each quantity of read_motion by each force, order by order, at the time of the table."""
     here, size = record(n, mode), 2 * n[at.BLOCKS]
     bodies, count = n[at.BODIES], n[at.BODIES] + n[at.POINTS]
     out = to.first
@@ -108,11 +108,11 @@ def fit_parabola(w: Numbers, start: int, middle: int, end: int, count: int, t: f
 
 @njit
 def fit_forces(a: Arrays, command: float, t: float, table: Segment, shifts: Segment, places: SubstepScratch) -> None:
-    """Find the force over t as the parabola through its values at start, middle and end of the motion it causes.
+    """Fit the forces over t [s] by parabolas through their values at start, middle and end of the motion that they cause.
 
-    Order four in t, solved by sweeps over the few quantities that the laws ask for: without the laws' forces they
-    move as `table` says, and by each force as `shifts` says, both for the middle, then the end (exponential collocation
-    on Lobatto points: Hochbruck and Ostermann, Exponential integrators, Acta Numerica 2010, section 2.2).
+    Exponential collocation on Lobatto points, of order four (Hochbruck and Ostermann, Exponential integrators, Acta Numerica
+    2010, section 2.2), solved by sweeps over the few quantities that enter the laws. `table` has the blocks' responses, `shifts`
+    the forces' influence on these quantities, both at the middle, then at the end.
     """
     d, n, s, w = a.d, a.n, a.s, a.w
     mode = int(s[at.MODE])
@@ -142,7 +142,7 @@ def fit_forces(a: Arrays, command: float, t: float, table: Segment, shifts: Segm
         for j in range(2 * count):
             change = max(change, abs(w[new + j] - w[nodes + count + j]))
             w[nodes + count + j] = w[new + j]
-        if change * min(change / before, 1.0) < d[at.TOLERANCE]:  # what further sweeps would change
+        if change * min(change / before, 1.0) < d[at.TOLERANCE]:  # estimate of the change by all further sweeps
             break
         before = change
     fit_parabola(w, nodes, nodes + count, nodes + 2 * count, count, t, coefficients)

@@ -1,6 +1,6 @@
-"""Forces that vary with the motion, over a step without events.
+"""Forces that vary with the motion over an event-free step: quartics in time.
 
-The force is the quartic in time through its values at five Lobatto nodes of the motion that it causes: exponential
+Each force is the quartic through its values at five Lobatto nodes of the motion that the forces cause: exponential
 collocation of order eight (Hochbruck and Ostermann, Exponential integrators, Acta Numerica 2010, section 2.2).
 """
 
@@ -17,20 +17,21 @@ from flexarm_env.plant.event_free_table import NODES, ORDER, StepTable
 from flexarm_env.plant.propagate import dot, inlined_dot
 from flexarm_env.plant.stick_slip import apply_laws, record
 
-#: Coefficients of u to u⁴ from the values at the nodes of what is 0 at u = 0.
+#: Coefficients of u to u⁴ from the values at the nodes of a quartic that is 0 at u = 0.
 COEFFICIENTS = np.ascontiguousarray(np.linalg.inv(np.power.outer(NODES, np.arange(1, 5))))
 MOST_SWEEPS = 8
-#: Over the force: what further sweeps may change, and the largest coefficient of the quartic part that a step may have.
+#: Largest change by further sweeps, and largest coefficient of u⁴ in a step that is not halved; both as a share of the force.
 SWEEP_TOLERANCE, QUARTIC_TOLERANCE = 1e-8, 2e-2
-#: Sweeps that change the force by more than this share of what the one before did are given up, if the step can be halved.
+#: Slowest convergence, as the ratio of successive sweeps' changes, before a step is halved.
 SLOW = 0.3
 
 
 class StepScratch(NamedTuple):
     """Places in w during a step without events, behind the new state at 0.
 
-    How far each block may stray, the drivers, the motion and the forces at the start, the coefficients of the forces'
-    change; for its fit a motion, the forces of it, their values at the nodes, the motion without the change.
+    `bends`: bound of each block's chord error. `inputs`: the drivers. `start`, `forces`: motion and forces at the start.
+    `changes`: the coefficients of the forces' change. For the fit of these: `motion` at a node, the forces there (`new`),
+    their `values` at all nodes, the motion without the forces' change (`free`).
     """
 
     bends: int
@@ -61,7 +62,7 @@ def step_places(n: Places) -> StepScratch:
 
 @njit(forceinline=True)
 def move_freely(a: Arrays, table: StepTable, places: StepScratch) -> None:
-    """Write each quantity at each node as it moves under the drivers alone."""
+    """Write each quantity at each node of the motion under constant drivers."""
     d, n, s, w = a.d, a.n, a.s, a.w
     bodies, drivers, size = n[at.BODIES], n[at.DRIVERS], 2 * n[at.BLOCKS]
     holds = record(n, int(s[at.MODE])) + n[at.HOLDS_ANGLE]
@@ -77,7 +78,7 @@ def move_freely(a: Arrays, table: StepTable, places: StepScratch) -> None:
 
 @njit(forceinline=True)
 def sweep_nodes(a: Arrays, length: float, table: StepTable, places: StepScratch) -> float:
-    """Evaluate the forces at the nodes of the motion that they cause; return how much they have changed since the last sweep."""
+    """Evaluate the forces at the nodes of the motion that they cause; return their largest change since the last sweep."""
     s, w, bodies = a.s, a.w, a.n[at.BODIES]
     mode = int(s[at.MODE])
     change = 0.0
@@ -102,9 +103,9 @@ def sweep_nodes(a: Arrays, length: float, table: StepTable, places: StepScratch)
 
 @njit
 def fit_quartic(a: Arrays, length: float, last: bool, table: StepTable, places: StepScratch) -> bool:
-    """Find how the forces change over the step: coefficients of u to u⁴, by body, to w at `changes`.
+    """Fit the change of the forces over the step: coefficients of u to u⁴, by body, to w at `changes`.
 
-    Return whether the sweeps converge and the quartic is small. `last` says that the step cannot be halved.
+    Return whether the sweeps converge and the coefficient of u⁴ is small. With `last` the step cannot be halved.
     """
     w, bodies = a.w, a.n[at.BODIES]
     move_freely(a, table, places)
@@ -129,7 +130,7 @@ def fit_quartic(a: Arrays, length: float, last: bool, table: StepTable, places: 
 
 @njit
 def variation(w: Numbers, changes: int) -> float:
-    """Bound of how much a force varies over the step."""
+    """Bound the variation of a force over the step."""
     total = 0.0
     for order in range(ORDER):
         total += (order + 1) * abs(w[changes + order])

@@ -1,10 +1,11 @@
-"""Where each quantity stands in the flat arrays that the kernel reads and writes.
+"""Places of all quantities in the flat arrays that the kernel reads and writes.
 
 The kernel takes four arrays and no more, because numba pays for each array at each call: constants d (float64), counts
 and places n (int64), the state s (float64) and scratch w (float64).
 """
 
-# --- n: counts, then places within one mode's record in d, then the lists of active laws
+# --- n: counts, places within one mode's record in d, lists of active laws. STEADY_BODIES is the number of bodies if no force
+# varies, else 0; STEP_TABLES are tables of event-free steps or, with drag, of the forces' influence
 BODIES, COORDINATES, COUPLED, VARYING, POINTS, BLOCKS, SIGNALS, STATES, MODES, STRIDE = range(10)
 EARLY_SUBSTEPS, LATE_SUBSTEPS, DRIVERS = 10, 11, 12
 C0, C1, RESPONSES, PHYSICAL, MODAL, FORCING, FORCE_COLUMNS, SPEED, SPEED_WEIGHT, ANGLE, HOLDS_ANGLE = range(13, 24)
@@ -14,15 +15,15 @@ FRICTION_LAWS, TORQUE_LAWS, DRAG_LAWS, DRIVE_LAWS, PARAMETERS, STEADY_BODIES, QU
 MESH, MESH_WEIGHT, SENSOR_LAWS, FACTOR_LAWS, PRESLIDING_LAWS, WEIGHT_LAWS, RAMP_LAWS = range(41, 48)
 COUNTS = 48
 
-# --- one block's numbers in GLIDE, all that a step without events needs: C, S, R₀, S + c₁ R₀, c₀, c₁, how much its
-# amplitude bends the tested row, that row's two numbers, its forcing by command, hub torque, 1, held hub, two each
+# --- one block's numbers in QUIET_TABLE: C, S, R₀, S + c₁ R₀, c₀, c₁, the tested row's chord error per amplitude, that row's two
+# numbers, the forcing by command, hub torque, 1, held hub, two each
 Q_C, Q_S, Q_R0, Q_S_R0, Q_C0, Q_C1, Q_BEND, Q_ROW = range(8)
 Q_COMMAND, Q_HUB, Q_ONE, Q_HELD = 9, 11, 13, 15
 QUIET_SIZE = 17
 
 # --- d: single constants, before the modes' records
 GAP, TOLERANCE, INTERVAL, EARLY_LENGTH, LATE_LENGTH, HUB_RUBS, MOTOR_RUBS, GEAR_RATIO = range(8)
-# what the gears carry: per windup, per its rate, and of rigid ones per command
+# torque in the gears per windup, per its rate, and of rigid ones per command
 LOAD_STIFFNESS, LOAD_DAMPING, LOAD_BY_COMMAND = range(8, 11)
 CONSTANTS = 11
 

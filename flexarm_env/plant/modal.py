@@ -1,4 +1,4 @@
-"""Block-diagonal form of the linear part, one for each way in which hub, motor and gears can be held."""
+"""Block-diagonal form of the linear part, one for each mode of hub, motor and gears."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Mode:
     modal: Matrix  # (2 blocks, states): z from [q, q̇, e]
     forcing: Matrix  # (2 blocks, drivers)
     beam_forcing: Matrix  # (2 blocks, forces on the beam)
-    hold: Matrix  # (bodies, 2 blocks): torque that friction must resist, on a body that stands
+    hold: Matrix  # (bodies, 2 blocks): torque that friction must resist, on a body at rest
     hold_drivers: Matrix  # (bodies, drivers)
     hold_beam: Matrix  # (bodies, forces on the beam)
 
@@ -49,45 +49,25 @@ def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
         model: the matrices.
         which: HUB_STUCK, MOTOR_STUCK and GEAR_OPEN added up.
     """
-    size, extra = len(model.names), model.extra.shape[-1]
-    frame = _frame(size, "motor" in model.names, extra, which)
+    frame = _frame(len(model.names), "motor" in model.names, model.extra.shape[-1], which)
     free, held = frame.free, frame.held
-    arms, stiffness, damping, drivers = model.mass.shape[:-2], model.stiffness.copy(), model.damping.copy(), model.input.copy()
+    stiffness, damping, drivers = model.stiffness.copy(), model.damping.copy(), model.input.copy()
     if "motor" in model.names and not which & GEAR_OPEN:
         _close_gears(structure, model, stiffness, damping, drivers)
     for column, place in held:
         drivers[..., column] -= stiffness[..., place]
     inertial = model.mass @ free
-    inverse = np.linalg.inv(free.T @ inertial)
+    inverse = np.asarray(np.linalg.inv(free.T @ inertial), dtype=np.float64)
     answer = inverse @ free.T  # accelerations by forces
-    damped, bent = damping @ free, stiffness @ free
-    positions, states = free.shape[1], 2 * free.shape[1] + extra
-    dynamics = np.zeros((*arms, states, states))
-    dynamics[..., :positions, positions : 2 * positions] = np.eye(positions)
-    pull = _clean(free.T @ bent, stiffness)
-    rows = slice(positions, 2 * positions)
-    dynamics[..., rows, :positions] = -inverse @ pull
-    dynamics[..., rows, rows] = -answer @ damped
-    dynamics[..., rows, 2 * positions :] = answer @ model.from_extra
-    into_extra = model.extra_from_motion
-    dynamics[..., 2 * positions :, :positions] = _clean(into_extra[..., :size] @ free, into_extra)
-    dynamics[..., 2 * positions :, rows] = into_extra[..., size:] @ free
-    dynamics[..., 2 * positions :, 2 * positions :] = model.extra
+    dynamics = _dynamics(model, free, stiffness, damping, inverse)
     c0, c1, v, w = blocks_of(dynamics)
-    force = np.zeros((*arms, states, len(DRIVERS)))
-    force[..., rows, :] = answer @ drivers
-    force[..., 2 * positions :, :] = model.extra_from_input
+    rows, bodies = slice(free.shape[1], 2 * free.shape[1]), 2 if "motor" in model.names else 1
+    force = _padded(answer @ drivers, dynamics, rows)
+    force[..., rows.stop :, :] = model.extra_from_input
     for column, place in held:
-        force[..., 2 * positions :, column] += into_extra[..., place]
-    along = np.zeros((*arms, states, model.beam_force.shape[-1]))
-    along[..., rows, :] = answer @ model.beam_force
-    bodies = 2 if "motor" in model.names else 1
-    resist = np.zeros((*arms, bodies, states))
-    resist[..., 2 * positions :] = model.from_extra[..., :bodies, :]
-    resist[..., rows] -= damped[..., :bodies, :]
-    resist[..., :positions] -= bent[..., :bodies, :]
+        force[..., rows.stop :, column] += model.extra_from_motion[..., place]
+    along = _padded(answer @ model.beam_force, dynamics, rows)
     inertial = inertial[..., :bodies, :]
-    resist -= inertial @ dynamics[..., rows, :]
     return Mode(
         c0=c0,
         c1=c1,
@@ -96,18 +76,55 @@ def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
         modal=w @ frame.pick,
         forcing=w @ force,
         beam_forcing=w @ along,
-        hold=resist @ v,
+        hold=_resisted(model, stiffness @ free, damping @ free, inertial, dynamics) @ v,
         hold_drivers=drivers[..., :bodies, :] - inertial @ force[..., rows, :],
         hold_beam=model.beam_force[..., :bodies, :] - inertial @ along[..., rows, :],
     )
 
 
+def _dynamics(model: LinearModel, free: Matrix, stiffness: Matrix, damping: Matrix, inverse: Matrix) -> Matrix:
+    """Return A (…, states, states) of ẋ = A x, for x the free positions, their rates and the extra states."""
+    arms, size, positions = model.mass.shape[:-2], len(model.names), free.shape[1]
+    states = 2 * positions + model.extra.shape[-1]
+    dynamics = np.zeros((*arms, states, states))
+    dynamics[..., :positions, positions : 2 * positions] = np.eye(positions)
+    pull = _clean(free.T @ (stiffness @ free), stiffness)
+    rows = slice(positions, 2 * positions)
+    dynamics[..., rows, :positions] = -inverse @ pull
+    dynamics[..., rows, rows] = -(inverse @ free.T) @ (damping @ free)
+    dynamics[..., rows, 2 * positions :] = (inverse @ free.T) @ model.from_extra
+    into_extra = model.extra_from_motion
+    dynamics[..., 2 * positions :, :positions] = _clean(into_extra[..., :size] @ free, into_extra)
+    dynamics[..., 2 * positions :, rows] = into_extra[..., size:] @ free
+    dynamics[..., 2 * positions :, 2 * positions :] = model.extra
+    return dynamics
+
+
+def _padded(accelerations: Matrix, dynamics: Matrix, rows: slice) -> Matrix:
+    """Return accelerations in the rows of the positions' rates, and zeros in those of the other states."""
+    padded = np.zeros((*dynamics.shape[:-1], accelerations.shape[-1]))
+    padded[..., rows, :] = accelerations
+    return padded
+
+
+def _resisted(model: LinearModel, stiffness: Matrix, damping: Matrix, inertial: Matrix, dynamics: Matrix) -> Matrix:
+    """Return the rows (…, bodies, states) of the torque that friction resists, from matrices on the free positions."""
+    bodies, positions = inertial.shape[-2], inertial.shape[-1]
+    rows = slice(positions, 2 * positions)
+    resist = np.zeros((*inertial.shape[:-1], dynamics.shape[-1]))
+    resist[..., 2 * positions :] = model.from_extra[..., :bodies, :]
+    resist[..., rows] -= damping[..., :bodies, :]
+    resist[..., :positions] -= stiffness[..., :bodies, :]
+    resist -= inertial @ dynamics[..., rows, :]
+    return resist
+
+
 def complete(free: Mode, held: Mode, body: int, speed: int) -> None:
-    """Write into a mode what would hold a body that stands for a moment.
+    """Add to a mode the torque that would hold a free body at zero speed.
 
     Args:
-        free: the mode, in which the body is free.
-        held: the one that holds it, and the same others.
+        free: the mode with the body free.
+        held: the mode with the body held and all else equal.
         body: 0 hub, 1 motor.
         speed: the row of the body's speed in [q, q̇, e], which is zero.
     """
@@ -121,7 +138,7 @@ def complete(free: Mode, held: Mode, body: int, speed: int) -> None:
 
 
 def _clean(product: Matrix, scale: Matrix) -> Matrix:
-    """Zero what is only rounding, so that a coordinate that nothing depends on is seen as such."""
+    """Set rounding errors to zero, so that a coordinate on which nothing depends is recognised."""
     if not product.size:
         return product
     largest = np.abs(scale).max(axis=(-2, -1), keepdims=True)
@@ -130,7 +147,7 @@ def _clean(product: Matrix, scale: Matrix) -> Matrix:
 
 @dataclass(frozen=True)
 class _Frame:
-    """What a mode's coordinates are, whatever the arm's numbers."""
+    """Coordinates of a mode, which do not depend on the arm's numbers."""
 
     free: Matrix  # (coordinates, positions): coordinates from the mode's positions
     held: list[tuple[int, int]]  # driver and coordinate of each held body

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from flexarm_env.plant import layout as at
+from flexarm_env.plant.active_laws import ActiveLaw
 from flexarm_env.plant.beam import Matrix
 from flexarm_env.plant.compose import Law, compose
-from flexarm_env.plant.flat_arrays import RESPONSE, ActiveLaw, pack
+from flexarm_env.plant.flat_arrays import RESPONSE, pack
 from flexarm_env.plant.structure import Structure, assemble, stacked
 
 NO_GAINS = np.zeros((0, 0, 0))
@@ -23,8 +24,8 @@ class Plant:
 
     Args:
         structure: the linear part.
-        active: the laws of friction, torque, drag and drive that act.
-        catalogue: all laws of the catalogue, which the compiled kernel knows.
+        active: the active laws.
+        catalogue: all laws of the catalogue, with which the kernel is compiled.
         interval: sampling time [s].
     """
 
@@ -71,10 +72,10 @@ class Plant:
         return self.constants[start : start + 2 * self.blocks * self.states].reshape(2 * self.blocks, self.states)
 
     def transition(self, mode: int, interval: float) -> tuple[Matrix, Matrix]:
-        """Return what an interval makes of the state in a mode.
+        """Return the transition matrix of the physical state over an interval [s] in a mode.
 
         Returns:
-            (states, states), for the physical state; (states,), what 1 Nm on the hub adds.
+            (states, states); (states,), the change by 1 Nm on the hub.
         """
         start = self.layout[at.MODES] + mode * self.layout[at.STRIDE]
         table = np.zeros((self.blocks, RESPONSE))
@@ -92,7 +93,7 @@ class Plant:
         return to_physical @ step @ self.to_modal(mode), to_physical @ answer @ hub
 
     def place(self, physical: Matrix | None = None, command: float = 0.0) -> None:
-        """Put the arm at [q, q̇, extra] (states,), at rest at angle 0 by default, under a command [A or V]."""
+        """Set the state [q, q̇, extra] (states,), at rest at angle 0 by default, under a command [A or V]."""
         start = np.zeros(self.states) if physical is None else np.ascontiguousarray(physical, dtype=float)
         self.state[:] = 0.0
         self.state[at.COMMAND] = command
@@ -111,7 +112,7 @@ class Plant:
         gains: Matrix = NO_GAINS,
         measured: Matrix = NOT_MEASURED,
     ) -> Matrix:
-        """Play commands (samples,) from the present state; return readings (samples, signals) without noise.
+        """Apply commands (samples,) from the present state; return readings (samples, signals) without noise.
 
         Args:
             commands: held from each sample to the next [A or V].
@@ -122,7 +123,7 @@ class Plant:
         return self.play(self.delayed(commands), intervals, gains, measured)
 
     def play(self, commands: Matrix, intervals: Matrix, gains: Matrix, measured: Matrix) -> Matrix:
-        """Like replay, for commands that have been shifted by the whole samples of the delay."""
+        """Apply commands as replay does, already shifted by the whole samples of the delay."""
         readings = np.empty((len(commands), len(self.signals)))
         self.kernel.replay(
             self.constants,

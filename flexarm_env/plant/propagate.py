@@ -4,8 +4,8 @@ A block is ṗ = P + f₁, Ṗ = −c₀ p − c₁ P + f₂. With S(t) its answ
     p(t) = C p + S P + …,    P(t) = −c₀ S p + (C − c₁ S) P + …
 and R₀ = ∫S, R₁ = ∫R₀, R₂ = ∫R₁ give the answer to forces 1, t, t²/2.
 
-Arguments: d with the blocks' c₀ at `c0` and c₁ at `c1`; z in s from HEADER on; in w, the force's coefficients of 1, t,
-t²/2 at `force`, 2 · blocks each. A row is at `row` in d.
+Arguments: d with the blocks' c₀ at `c0` and c₁ at `c1`; in w, the force's coefficients of 1, t, t²/2 at `force`,
+2 · blocks each.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from numba import njit
 
 from flexarm_env.plant.bundles import Blocks, Numbers, Segment
 
-#: 1/k!, for the series of short times, and how many terms it needs below either reach of |c₀| t² + |c₁| t.
+#: 1/k!, for the series of short times; the number of its terms for a |c₀| t² + |c₁| t up to either limit.
 INVERSE_FACTORIALS = np.array([1.0 / math.factorial(k) for k in range(18)])
 SHORT_ARGUMENT, SHORT_TERMS = 1e-3, 6
 LONG_ARGUMENT, LONG_TERMS = 0.125, 12
@@ -42,7 +42,7 @@ def series(d0: float, d1: float, terms: int) -> tuple[float, float, float, float
 
 @njit(forceinline=True)
 def series_argument(c0: float, c1: float, t: float) -> float:
-    """Return how far a block gets within t [s] from where it would without its stiffness and damping: series' argument."""
+    """Return |c₀| t² + |c₁ t|, on which the number of terms of the series depends."""
     return abs(c0) * t * t + abs(c1 * t)
 
 
@@ -50,7 +50,7 @@ def series_argument(c0: float, c1: float, t: float) -> float:
 def block_response(c0: float, c1: float, t: float) -> tuple[float, float, float, float, float]:
     """Return (C, S, R0, R1, R2) of one block after time t [s]: the series of a short part of t, doubled until it is t.
 
-    There are no cases: it holds for any damping, and takes no longer than one sine, cosine and exponential would.
+    It holds for any damping, without cases, and takes no longer than one sine, cosine and exponential.
     """
     doublings = 0
     while series_argument(c0, c1, t) > LONG_ARGUMENT:
@@ -72,7 +72,7 @@ def block_response(c0: float, c1: float, t: float) -> tuple[float, float, float,
 
 @njit(forceinline=True)
 def respond(d: Numbers, c0: int, c1: int, blocks: int, t: float, table: Numbers, first: int) -> None:
-    """Fill table from `first` on with the responses of all blocks after t."""
+    """Write the responses of all blocks after t [s] to table from `first` on."""
     for k in range(blocks):
         c, s, r0, r1, r2 = block_response(d[c0 + k], d[c1 + k], t)
         i = first + RESPONSE * k
@@ -81,7 +81,7 @@ def respond(d: Numbers, c0: int, c1: int, blocks: int, t: float, table: Numbers,
 
 @njit(forceinline=True)
 def advance(d: Numbers, blocks: Blocks, table: Segment, z: Segment, w: Numbers, force: int, out: int) -> None:
-    """Write to w at `out`, which may be its own place, where z gets to by the time of the table."""
+    """Write z at the time of the table to w at `out`, which may be the place of z itself."""
     for k in range(blocks.number):
         j = table.first + RESPONSE * k
         c, r, r0 = table.data[j], table.data[j + 1], table.data[j + 2]
@@ -105,7 +105,7 @@ def advance(d: Numbers, blocks: Blocks, table: Segment, z: Segment, w: Numbers, 
 
 @njit(forceinline=True)
 def inlined_dot(d: Numbers, row: int, z: Numbers, first: int, count: int) -> float:
-    """Return the row at `row` in d times the numbers at `first` in z, as three sums that need not wait for each other."""
+    """Return the product of the row at `row` in d and the numbers at `first` in z, as three independent sums."""
     one, two, three = 0.0, 0.0, 0.0
     i = 0
     while i + 2 < count:
@@ -121,5 +121,5 @@ def inlined_dot(d: Numbers, row: int, z: Numbers, first: int, count: int) -> flo
 
 @njit
 def dot(d: Numbers, row: int, z: Numbers, first: int, count: int) -> float:
-    """Return what inlined_dot does, where less code is worth more than a call."""
+    """Return inlined_dot's product by a call: for places where less code is worth more."""
     return inlined_dot(d, row, z, first, count)

@@ -1,4 +1,4 @@
-"""The short cut: a whole step in which nothing happens, which is nearly every step, in one pass over the blocks."""
+"""The quiet step: a whole tabulated substep without events, as nearly all are, in one pass over the blocks."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from flexarm_env.plant.stick_slip import Contact, effect_torque, friction_budget
 
 @njit
 def prepare_quiet_step(d: Numbers, n: Places, mode: int, length: float, table: int, place: int) -> None:
-    """Gather the table of a substep without events from `place` on."""
+    """Write the table of a quiet step from `place` on."""
     here = record(n, mode)
     row, weight = here + n[at.SPEED], here + n[at.SPEED_WEIGHT]
     if is_stuck(mode, 0):
@@ -43,7 +43,7 @@ def prepare_quiet_step(d: Numbers, n: Places, mode: int, length: float, table: i
 
 @njit
 def prepare(d: Numbers, n: Places) -> None:
-    """Fill in the tables of d that follow from its modes and the lengths of its substeps."""
+    """Write the tables of d that follow from its modes and the lengths of its substeps."""
     blocks = n[at.BLOCKS]
     for mode in range((n[at.PARAMETERS] - n[at.MODES]) // n[at.STRIDE]):
         here = n[at.MODES] + mode * n[at.STRIDE]
@@ -82,10 +82,10 @@ def limits(a: Arrays, here: int, stuck: bool, command: float, torque: float) -> 
 
 @njit(forceinline=True)
 def quiet_step(a: Arrays, command: float, length: float, slot: int) -> bool:
-    """Move the arm on by a whole tabulated substep and return True, if it is sure that no event falls in it.
+    """Advance the arm by a whole tabulated substep and return True, if certainly no event falls in it.
 
-    x = ż = (q + f₁, f₂ − c₀ p − c₁ q) moves as z would without a force, and its size bounds how far the row that
-    tells of events strays from its chord.
+    x = ż = (q + f₁, f₂ − c₀ p − c₁ q) moves as z does without a force, and its size bounds the chord error of the row
+    that is tested for events.
     """
     d, n, s, w = a.d, a.n, a.s, a.w
     mode = int(s[at.MODE]) & 1

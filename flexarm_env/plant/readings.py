@@ -1,4 +1,4 @@
-"""What the sensors read."""
+"""The readings of the sensors."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexarm_env.plant.stick_slip import angle_of, record
 
 @njit
 def apply_sensor_laws(d: Numbers, n: Places, s: Numbers, out: Numbers, first: int) -> None:
-    """Turn readings into what the sensors' laws make of them."""
+    """Apply the sensors' laws to readings."""
     mode, place = int(s[at.MODE]), n[at.SENSOR_LAWS]
     angle = angle_of(d, n, s, mode, 0, Segment(s, at.HEADER))
     motor_angle = d[at.GEAR_RATIO] * angle_of(d, n, s, mode, n[at.BODIES] - 1, Segment(s, at.HEADER))

@@ -1,4 +1,4 @@
-"""A whole run: the arm put into a state, commands played, readings kept and, if asked, fed back."""
+"""A whole run: initial state, commands, readings, and their feedback to the state."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from flexarm_env.plant.control_step import control_step, drive_output, uneven_st
 from flexarm_env.plant.readings import measure
 from flexarm_env.plant.stick_slip import GEAR_OPEN, angle_of, decide_stick_or_slip, enter_mode, is_stuck, preslides
 
-#: Sum of block coordinates beyond which a replay gives up and reports NaN.
+#: Sum of block coordinates beyond which a replay ends in NaN.
 RUN_AWAY = 1e9
 
 
 @njit
 def place_at(d: Numbers, n: Places, s: Numbers, physical: Numbers, command: float, w: Numbers) -> None:
-    """Put the arm into a physical state (states,): a body at rest sticks if friction holds it."""
+    """Set a physical state (states,); a body at rest sticks if friction holds it."""
     mode = 0
     if d[at.GAP] > 0.0:
         windup = physical[1] - physical[0]
@@ -57,13 +57,13 @@ def feed_back(
         for body in range(n[at.BODIES]):
             if is_stuck(mode, body):
                 s[at.HELD_HUB + body] += gains[mode, size + body, j] * error
-    if preslides(n, 0):  # a correction is no motion, against which friction would build up
+    if preslides(n, 0):  # friction does not build up against a correction
         s[at.KNOWN_ANGLE] = angle_of(d, n, s, mode, 0, Segment(s, at.HEADER))
 
 
 @njit(forceinline=True)
 def is_lost(n: Places, s: Numbers) -> bool:
-    """Whether the state has run away: a feedback that does not suit the arm, or values beyond reason."""
+    """Whether the state has diverged: by feedback gains that do not suit the arm, or by unreasonable values."""
     total = 0.0
     for i in range(2 * n[at.BLOCKS]):
         total += abs(s[at.HEADER + i])
@@ -75,7 +75,7 @@ def replay(
     d: Numbers, n: Places, s: Numbers, commands: Numbers, intervals: Numbers, readings: Numbers,
     gains: Gains, measured: Samples, w: Numbers,
 ) -> None:  # fmt: skip
-    """Play commands (samples,) and fill readings (samples · signals,), each taken before its command acts.
+    """Apply commands (samples,) and write readings (samples · signals,), each taken before its command acts.
 
     `intervals` (samples,) holds the sampling times [s] where they are uneven, else nothing. With gains, each reading's
     error against `measured` (samples, signals) is fed back (innovations form); without, both are empty.

@@ -1,4 +1,4 @@
-"""Friction decides here, once: which torque it gives while a body turns, and whether a body at rest stays held."""
+"""Dry friction: its torque while a body turns, and the decision whether a body at rest sticks."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from flexarm_env.plant.bundles import Arrays, Numbers, Places, Segment
 from flexarm_env.plant.laws import drag_law, factor_law, friction_law, presliding_law, torque_law, weight_law
 from flexarm_env.plant.propagate import dot
 
-#: Bit of a mode whose gears are open; no other stands above it.
+#: Bit of a mode with open gears, the highest one.
 GEAR_OPEN = 4
 
 
 @njit
 def record(n: Places, mode: int) -> int:
-    """Where the mode's record starts in d."""
+    """Return the place in d of a mode's record."""
     return n[at.MODES] + mode * n[at.STRIDE]
 
 
@@ -28,7 +28,7 @@ def is_stuck(mode: int, body: int) -> bool:
 
 
 class Contact(NamedTuple):
-    """What dry friction depends on: direction (±1), speed along it [rad/s], angle [rad], time [s], load [Nm], whether at rest."""
+    """Arguments of dry friction: direction (±1), speed along it [rad/s], angle [rad], time [s], load [Nm], whether at rest."""
 
     direction: float
     speed: float
@@ -40,7 +40,7 @@ class Contact(NamedTuple):
 
 @njit
 def friction_budget(d: Numbers, n: Places, body: int, c: Contact) -> float:
-    """Dry friction [Nm] that opposes motion in a direction, or resists a push in it at rest: a sum over the effects."""
+    """Return dry friction [Nm] against motion in a direction, or at rest against a push: the sum over the effects."""
     total = 0.0
     place = n[at.FRICTION_LAWS]
     for j in range(n[place]):
@@ -57,20 +57,20 @@ def friction_budget(d: Numbers, n: Places, body: int, c: Contact) -> float:
 
 @njit
 def preslides(n: Places, body: int) -> bool:
-    """Whether a body's friction yields before it slides: it then never sticks."""
+    """Whether a body's friction yields before it slides, so that the body never sticks."""
     return body == 0 and n[n[at.PRESLIDING_LAWS]] > 0
 
 
 @njit
 def presliding_friction(d: Numbers, n: Places, s: Numbers, angle: float, level: float) -> float:
-    """Friction [Nm] against motion to positive angles of a hub that preslides, from where it was last known."""
+    """Return the presliding friction [Nm] of the hub against motion to positive angles, from its last known value."""
     place = n[at.PRESLIDING_LAWS]
     return presliding_law(n[place + 1], s[at.KNOWN_FRICTION], angle - s[at.KNOWN_ANGLE], level, d, n[place + 2])
 
 
 @njit
 def gear_load(d: Numbers, n: Places, s: Numbers, mode: int, windup: float, rate: float) -> float:
-    """Torque [Nm, arm side] that the gears carry; of rigid ones, the drive's."""
+    """Return the torque [Nm, arm side] in the gears; in rigid ones, the drive's."""
     if n[at.BODIES] == 1:
         return d[at.LOAD_BY_COMMAND] * s[at.COMMAND]
     if mode >= GEAR_OPEN:
@@ -80,7 +80,7 @@ def gear_load(d: Numbers, n: Places, s: Numbers, mode: int, windup: float, rate:
 
 @njit(forceinline=True)
 def effect_torque(d: Numbers, n: Places, body: int, angle: float, speed: float, time: float) -> float:
-    """Non-linear torque [Nm] of the effects; all of it acts on the hub."""
+    """Return the non-linear torque [Nm] of the effects, which acts on the hub."""
     total = 0.0
     place = n[at.TORQUE_LAWS]
     for j in range(n[place] if body == 0 else 0):
@@ -90,7 +90,7 @@ def effect_torque(d: Numbers, n: Places, body: int, angle: float, speed: float, 
 
 @njit
 def angle_of(d: Numbers, n: Places, s: Numbers, mode: int, body: int, z: Segment) -> float:
-    """Arm-side angle [rad] of hub or motor."""
+    """Return the arm-side angle [rad] of hub or motor."""
     here = record(n, mode)
     free = dot(d, here + n[at.ANGLE] + body * 2 * n[at.BLOCKS], z.data, z.first, 2 * n[at.BLOCKS])
     return free + d[here + n[at.HOLDS_ANGLE] + body] * s[at.HELD_HUB + body]
@@ -98,7 +98,7 @@ def angle_of(d: Numbers, n: Places, s: Numbers, mode: int, body: int, z: Segment
 
 @njit
 def read_motion(a: Arrays, mode: int, z: Segment, out: int) -> None:
-    """Write to w at `out` what laws ask for: the bodies' angles, their speeds, velocities at points of the beam."""
+    """Write the arguments of the laws to w at `out`: the bodies' angles, their speeds, velocities at points of the beam."""
     d, n, w = a.d, a.n, a.w
     here, size, bodies = record(n, mode), 2 * n[at.BLOCKS], n[at.BODIES]
     for body in range(bodies):
@@ -110,7 +110,7 @@ def read_motion(a: Arrays, mode: int, z: Segment, out: int) -> None:
 
 @njit(forceinline=True)
 def apply_laws(a: Arrays, mode: int, time: float, motion: int, out: int) -> None:
-    """Write to w at `out` the torque of friction and effects on each body, the drag at each point of the beam, its weight."""
+    """Write the torque of friction and effects on each body, the drag at each point of the beam and its weight to w at `out`."""
     d, n, s, w = a.d, a.n, a.s, a.w
     bodies = n[at.BODIES]
     last = bodies - 1
@@ -140,12 +140,12 @@ def apply_laws(a: Arrays, mode: int, time: float, motion: int, out: int) -> None
 
 @njit(forceinline=True)
 def evaluate_forces(a: Arrays, mode: int, held: int, out: int) -> None:
-    """Write to w at `out` the forces of the laws now, if the bodies of mode `held` are; room for twice as many is used."""
+    """Write the present forces of the laws to w at `out`, with the bodies of mode `held` held; uses room for twice as many."""
     n, s, w = a.n, a.s, a.w
     motion = out + n[at.BODIES] + n[at.POINTS]
     if n[at.VARYING]:
         read_motion(a, mode, Segment(s, at.HEADER), motion)
-    else:  # no law asks
+    else:  # no law depends on the motion
         for i in range(2 * n[at.BODIES]):
             w[motion + i] = 0.0
     apply_laws(a, held, s[at.TIME], motion, out)
@@ -153,7 +153,7 @@ def evaluate_forces(a: Arrays, mode: int, held: int, out: int) -> None:
 
 @njit
 def has_friction(d: Numbers, n: Places, body: int) -> bool:
-    """Whether a body has dry friction at all: without, it never sticks, and zero speed is nothing to it."""
+    """Whether a body has dry friction at all; without it a body never sticks, and zero speed is no event."""
     return d[at.HUB_RUBS + body] > 0.0
 
 
@@ -161,7 +161,7 @@ def has_friction(d: Numbers, n: Places, body: int) -> bool:
 def applied_offset(
     d: Numbers, n: Places, s: Numbers, body: int, command: float, w: Numbers, coefficients: int, order: int
 ) -> float:
-    """Part of the torque on a body that stands that is not in its row on z: its coefficient of 1, t, t²/2."""
+    """Return a coefficient (of 1, t, t²/2) of the torque on a body at rest, without the part in its row on z."""
     here = record(n, int(s[at.MODE]))
     total = 0.0
     if order == 0:
@@ -175,7 +175,7 @@ def applied_offset(
 
 @njit
 def load_now(d: Numbers, n: Places, s: Numbers, mode: int) -> float:
-    """Torque [Nm, arm side] that the gears carry now, if any law could ask for it."""
+    """Return the present torque [Nm, arm side] in the gears, as far as laws depend on it."""
     if not n[at.VARYING] or n[at.BODIES] == 1:
         return gear_load(d, n, s, mode, 0.0, 0.0)
     here, size = record(n, mode), 2 * n[at.BLOCKS]
@@ -187,15 +187,15 @@ def load_now(d: Numbers, n: Places, s: Numbers, mode: int) -> float:
 
 @njit
 def static_budget(d: Numbers, n: Places, s: Numbers, body: int, direction: float, angle: float, load: float) -> float:
-    """Static friction [Nm] that resists a push in `direction` on a body that stands at an angle."""
+    """Return the static friction [Nm] against a push in `direction` on a body at rest at an angle."""
     at_rest = friction_budget(d, n, body, Contact(direction, 0.0, angle, s[at.TIME], load, True))
-    # a body that breaks away against less than what then opposes it would be driven by its own friction
+    # with static friction below sliding friction, a body that breaks away would be driven by its own friction
     return max(at_rest, friction_budget(d, n, body, Contact(direction, 0.0, angle, s[at.TIME], load, False)))
 
 
 @njit
 def remember_friction(d: Numbers, n: Places, s: Numbers) -> None:
-    """Note the angle and the friction now of a hub that preslides."""
+    """Store the present angle and friction of a hub that preslides."""
     mode = int(s[at.MODE])
     if not preslides(n, 0) or is_stuck(mode, 0):
         return
@@ -222,7 +222,7 @@ def to_physical(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, out: i
 
 @njit
 def enter_mode(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, physical: int) -> None:
-    """Go over to a mode from the physical state in w at `physical`."""
+    """Switch to a mode from the physical state in w at `physical`."""
     s[at.MODE] = mode
     here = record(n, mode)
     for body in range(n[at.BODIES]):
@@ -233,9 +233,9 @@ def enter_mode(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, physica
 
 @njit(forceinline=True)
 def decide_stick_or_slip(a: Arrays, body: int, command: float, physical: int, coefficients: int) -> None:
-    """Decide whether a body whose speed is zero sticks or turns (thesis section 2.2).
+    """Decide whether a body at zero speed sticks or turns (thesis section 2.2).
 
-    The torque that would have to hold it is set against the budget of static friction.
+    The torque needed to hold it is compared with the budget of static friction.
     """
     d, n, s, w = a.d, a.n, a.s, a.w
     mode, bit = int(s[at.MODE]), 1 << body

@@ -1,4 +1,4 @@
-"""A substep: exact motion between events, the events, and the forces that vary with the motion."""
+"""A substep: exact motion from event to event, under forces that vary with the motion."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from flexarm_env.plant.stick_slip import (
 )
 from flexarm_env.plant.trial_motion import copy_size
 
-#: After an event the next is looked for this much later [s], twice as much after each further one in the same substep,
-#: so that events that crowd (white noise at zero speed) cannot hold time still.
+#: Time [s] after an event in which no other is searched, doubled with each further one in the same substep, so that a crowd of
+#: events (white noise at zero speed) cannot stop time.
 FIRST_BLIND_TIME = 1e-11
 UNTABULATED = -1
 
 
 @njit
 def substep_scratch(n: Places) -> int:
-    """How many numbers of scratch a substep needs."""
+    """Count the numbers of scratch of a substep."""
     count = n[at.BODIES] + n[at.POINTS]
     return 26 * n[at.BLOCKS] + copy_size(n[at.BLOCKS]) + n[at.STATES] + (14 + 12 * count) * count + 64
 
@@ -54,7 +54,7 @@ def substep_places(n: Places) -> SubstepScratch:
 
 @njit(forceinline=True)
 def apply_event(a: Arrays, event: Event, command: float, places: SubstepScratch) -> None:
-    """Let an event take place."""
+    """Change the mode at an event."""
     d, n, s, w = a.d, a.n, a.s, a.w
     mode, physical = int(s[at.MODE]), places.physical
     if event.kind == AGAIN:
@@ -73,7 +73,7 @@ def apply_event(a: Arrays, event: Event, command: float, places: SubstepScratch)
 
 @njit(forceinline=True)
 def oppose_motion(d: Numbers, n: Places, s: Numbers, mode: int) -> None:
-    """Let friction oppose the motion of a state that was set or corrected from outside."""
+    """Turn friction against the motion of a state that was set or corrected from outside."""
     size = 2 * n[at.BLOCKS]
     for body in range(n[at.BODIES]):
         if not is_stuck(mode, body):
@@ -84,9 +84,9 @@ def oppose_motion(d: Numbers, n: Places, s: Numbers, mode: int) -> None:
 
 @njit(forceinline=True)
 def find_forces(a: Arrays, command: float, t: float, slot: int, places: SubstepScratch) -> Segment:
-    """Write the forces on the blocks over t [s]; return the blocks' responses after it.
+    """Write the forces on the blocks over t [s]; return the table of the blocks' responses after t.
 
-    `slot` names the tables for exactly t, if it is not UNTABULATED.
+    `slot` is the number of the tables for exactly t, or UNTABULATED.
     """
     d, n, w = a.d, a.n, a.w
     mode, blocks, known = int(a.s[at.MODE]), n[at.BLOCKS], slot >= 0
@@ -113,7 +113,7 @@ def find_forces(a: Arrays, command: float, t: float, slot: int, places: SubstepS
 
 @njit
 def substep(a: Arrays, command: float, t: float, slot: int) -> None:
-    """Move the arm on by t [s] under a held command; `slot` names the tabulated responses for exactly t."""
+    """Advance the arm by t [s] under a held command; `slot` is the number of the tables for exactly t, or UNTABULATED."""
     d, n, s, w = a.d, a.n, a.s, a.w
     places = substep_places(n)
     left, blind = t, 0.0

@@ -1,4 +1,4 @@
-"""The motion ahead: a copy of it that is brought to any time within a step."""
+"""The trial motion: a copy of the motion that is advanced to any time within a step."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from flexarm_env.plant.propagate import LONG_ARGUMENT, RESPONSE, advance, respon
 
 @njit
 def copy_size(blocks: int) -> int:
-    """How many numbers a copy of the motion takes (see arrive)."""
+    """Count the numbers of a trial motion (see arrive)."""
     return 1 + (8 + RESPONSE) * blocks
 
 
 @njit(forceinline=True)
 def start_copy(m: Motion) -> None:
-    """Begin the copy of the motion anew (see arrive)."""
+    """Set the trial motion to the start of the step (see arrive)."""
     w, size = m.w, 2 * m.blocks.number
     w[m.copy] = 0.0
     for i in range(size):
@@ -28,9 +28,9 @@ def start_copy(m: Motion) -> None:
 
 @njit(forceinline=True)
 def arrive(m: Motion, t: float) -> None:
-    """Bring the copy of the motion to time t, from where it stands or, if that is long after, from the state.
+    """Advance the trial motion to time t, from its own time or, if that is much later, from the start of the step.
 
-    The copy is its time, z, and the force's coefficients from then on; behind it is room for a table.
+    It consists of its time, z, and the force's coefficients from that time on; behind it is room for a table.
     """
     d, w, blocks = m.d, m.w, m.blocks
     size = 2 * blocks.number
@@ -67,7 +67,7 @@ def rate_at_end(m: Motion, row: int, t: float) -> float:
 
 @njit
 def value_at(m: Motion, line: Line, t: float) -> tuple[float, float, float]:
-    """Return the value at time t, its rate and the rate's rate; the copy is brought there."""
+    """Return a quantity at time t, its first and second derivative; the trial motion is advanced to t."""
     arrive(m, t)
     d, w, size = m.d, m.w, 2 * m.blocks.number
     value, rate, bend = 0.0, 0.0, 0.0
