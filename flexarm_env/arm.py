@@ -8,11 +8,12 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from flexarm_env.arm_file import arm_from_table, read_arm, write_arm
 from flexarm_env.display import Shown
 from flexarm_env.effects import Catalogue, Effect, catalogue
 from flexarm_env.effects.catalogue import LAW_PORTS
 from flexarm_env.errors import InputError, did_you_mean
-from flexarm_env.parameters import INPUTS, SECTIONS, Parameter
+from flexarm_env.parameters import INPUTS, SECTIONS, Parameter, check_bounds
 from flexarm_env.sensors import Sensor, known_sensors
 
 if TYPE_CHECKING:
@@ -82,9 +83,21 @@ class Arm(Shown):
             >>> Arm.load("cu-rigid").signals
             ['arm_angle', 'motor_speed']
         """
-        from flexarm_env.arm_file import read_arm
+        return read_arm(cls, source, known or catalogue())
 
-        return read_arm(source, known or catalogue())
+    @classmethod
+    def from_table(cls, table: Mapping[str, Any], name: str, known: Catalogue | None = None) -> Arm:
+        """Build an arm from the tables of an arm file.
+
+        Args:
+            table: the parsed file.
+            name: of an arm whose file states none.
+            known: catalogue of effects; the shipped and installed ones by default.
+
+        Raises:
+            InputError: for an unknown, missing or impossible entry.
+        """
+        return arm_from_table(cls, table, name, known or catalogue())
 
     def save(self, path: str | Path) -> None:
         """Write the arm to a TOML file, completely or not at all. `load` reads back every value bit for bit.
@@ -103,8 +116,6 @@ class Arm(Shown):
             ...     Arm.load(f"{folder}/cogging.toml") == arm
             True
         """
-        from flexarm_env.arm_file import write_arm
-
         write_arm(self, Path(path))
 
     def with_effect(self, name: str, **parameters: float) -> Arm:
@@ -343,18 +354,6 @@ class Arm(Shown):
         from flexarm_env.linear import linearise
 
         return linearise(self, mode, interval)
-
-
-def check_bounds(path: str, value: float, parameter: Parameter) -> float:
-    """Check a value against its parameter's bounds, and return it.
-
-    Raises:
-        InputError: for a value out of bounds.
-    """
-    if not parameter.low <= value <= parameter.high:
-        unit = f" {parameter.unit}" if parameter.unit else ""
-        raise InputError(f"{path} = {value:g}{unit} is out of bounds: allowed are {parameter.low:g} to {parameter.high:g}{unit}")
-    return value
 
 
 @functools.cache

@@ -5,15 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from flexarm_env.arm import Arm, check_bounds
 from flexarm_env.effects import Catalogue
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import read_toml, write_whole
-from flexarm_env.parameters import DEFAULTS, INPUTS, SECTIONS, Parameter
+from flexarm_env.parameters import DEFAULTS, INPUTS, SECTIONS, Parameter, check_bounds
 from flexarm_env.sensors import known_sensors
 from flexarm_env.units import quantity
+
+if TYPE_CHECKING:
+    from flexarm_env.arm import Arm
 
 TOP = ("name", "description", "fixed", "drive", "hub", "beam", "sensors", "effects", "columns", "fitted", "origin")
 
@@ -34,10 +36,11 @@ def shipped_arms() -> dict[str, Path]:
     return {path.stem: path for folder in arm_folders() for path in sorted(folder.glob("*.toml"))}
 
 
-def read_arm(source: str | Path, known: Catalogue) -> Arm:
+def read_arm(kind: type[Arm], source: str | Path, known: Catalogue) -> Arm:
     """Read an arm from a file or by the name of a shipped arm.
 
     Args:
+        kind: class of the arm.
         source: path or name.
         known: catalogue of effects.
 
@@ -52,15 +55,16 @@ def read_arm(source: str | Path, known: Catalogue) -> Arm:
         raise InputError(f"no arm '{source}': neither a file nor a shipped arm{did_you_mean(str(source), shipped)}")
     table = read_toml(path)
     try:
-        return arm_from_table(table, path.stem, known)
+        return arm_from_table(kind, table, path.stem, known)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
 
 
-def arm_from_table(table: Mapping[str, Any], name: str, known: Catalogue) -> Arm:
+def arm_from_table(kind: type[Arm], table: Mapping[str, Any], name: str, known: Catalogue) -> Arm:
     """Build an arm from the tables of an arm file.
 
     Args:
+        kind: class of the arm.
         table: the parsed file.
         name: of an arm whose file states none.
         known: catalogue of effects.
@@ -70,20 +74,20 @@ def arm_from_table(table: Mapping[str, Any], name: str, known: Catalogue) -> Arm
     """
     _refuse_unknown("", table, TOP)
     drive = dict(_table(table, "drive"))
-    kind = drive.pop("input", "current")
-    if not isinstance(kind, str) or kind not in INPUTS:
-        raise InputError(f"drive.input = {kind!r}{did_you_mean(str(kind), INPUTS)}")
+    command = drive.pop("input", "current")
+    if not isinstance(command, str) or command not in INPUTS:
+        raise InputError(f"drive.input = {command!r}{did_you_mean(str(command), INPUTS)}")
     constants = {"drive": _section("drive", drive), "hub": _section("hub", _table(table, "hub"))}
-    if kind == "voltage" and constants["drive"]["resistance"] <= 0.0:
+    if command == "voltage" and constants["drive"]["resistance"] <= 0.0:
         raise InputError('drive.resistance is missing: voltage drive needs it, as "1.35 ohm"')
     if "beam" in table:
         constants["beam"] = _section("beam", _table(table, "beam"))
     elif sum((constants["hub"]["inertia"], constants["drive"]["motor_inertia"])) <= 0.0:
         raise InputError("hub.inertia is 0 and there is no beam: nothing could move")
     sensors = _sensors(_table(table, "sensors"))
-    arm = Arm(
+    arm = kind(
         name=str(table.get("name", name)),
-        input=kind,
+        input=command,
         constants=constants,
         sensors=sensors,
         fixed=_fixed(table.get("fixed", []), constants, sensors),
@@ -199,6 +203,7 @@ def arm_text(arm: Arm) -> str:
     """Format an arm as TOML, in SI units with the unit beside each value. Defaults are left out.
 
     Example:
+        >>> from flexarm_env import Arm
         >>> text = arm_text(Arm.load("thesis").with_effect("backlash", gap=0.06))
         >>> text.splitlines()[-2:]
         ['[effects.backlash]', 'gap = "0.06 rad"']

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexarm_env.errors import InputError
+
 #: SI unit of each kind of command.
 INPUTS: dict[str, str] = {"current": "A", "voltage": "V"}
 #: Parts that an effect or a sensor may need of an arm, beside its input.
@@ -159,3 +161,15 @@ SENSOR = {
 def reading_noise(sensor: Mapping[str, float]) -> float:
     """Compute the standard deviation of a sensor's reading in its own unit: its noise, and the rounding to its steps."""
     return float(np.hypot(sensor["noise"], sensor["resolution"] / 12**0.5))
+
+
+def check_bounds(path: str, value: float, parameter: Parameter) -> float:
+    """Check a value against its parameter's bounds, and return it.
+
+    Raises:
+        InputError: for a value out of bounds.
+    """
+    if not parameter.low <= value <= parameter.high:
+        unit = f" {parameter.unit}" if parameter.unit else ""
+        raise InputError(f"{path} = {value:g}{unit} is out of bounds: allowed are {parameter.low:g} to {parameter.high:g}{unit}")
+    return value

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from flexarm_env import cli
-from flexarm_env.identify.results import Candidate, Comparison, Diagnosis, Estimate, Replay, Row
+from flexarm_env.identify.explain.comparison import Comparison, Replay, Row
+from flexarm_env.identify.results import Candidate, Diagnosis, Estimate
 from flexarm_env.recordings.recording import Recording
 
 HEADER = "time [s],current [A],arm_angle [rad]\n"

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.results import Candidate, Comparison, Diagnosis, Estimate, Replay
+from flexarm_env.identify.explain.comparison import Comparison, Replay
+from flexarm_env.identify.results import Candidate, Diagnosis, Estimate
 from flexarm_env.recordings.recording import Recording
 
 SIGNALS = {"arm_angle": 2e-3, "motor_speed": 0.03, "strain_mid": 0.01, "strain_base": 0.01}

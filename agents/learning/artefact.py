@@ -22,8 +22,7 @@ from agents.learning.models import TRAINING_ONLY, bare_policy
 from agents.learning.options import Plan
 from agents.learning.plan_file import read_table
 from flexarm_env.arm import Arm
-from flexarm_env.arm_file import arm_from_table, arm_text
-from flexarm_env.effects import catalogue
+from flexarm_env.arm_file import arm_text
 from flexarm_env.errors import InputError
 from flexarm_env.files import write_whole
 
@@ -69,7 +68,7 @@ class Artefact:
                 weights = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
             if text.get("format") != FORMAT:
                 raise InputError(f"{path} holds no policy of format {FORMAT}; python -m agents.train makes one")
-            arm = arm_from_table(tomllib.loads(text["arm"]), path.stem, catalogue())
+            arm = Arm.from_table(tomllib.loads(text["arm"]), path.stem)
             return cls(read_table(json.loads(text["plan"])), arm, weights, json.loads(text["run"]))
         except OSError as error:
             raise InputError(f"cannot read {path}: {error.strerror}; name a file that python -m agents.train wrote") from None

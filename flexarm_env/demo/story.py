@@ -9,7 +9,8 @@ from rich.console import Console
 from rich.text import Text
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.results import Addition, Comparison, Diagnosis
+from flexarm_env.identify.explain.comparison import Comparison
+from flexarm_env.identify.results import Addition, Diagnosis
 from flexarm_env.pictures import words
 from flexarm_env.recordings.recording import Recording
 from flexarm_env.terminal import identification, outputs, plain_data, tables

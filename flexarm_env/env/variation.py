@@ -9,9 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexarm_env.arm import Arm, check_bounds
+from flexarm_env.arm import Arm
 from flexarm_env.effects import Effect
 from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.parameters import check_bounds
 
 Range = Sequence[float]
 #: Lowest value of a range that begins at an effect's absence, as a share of the range: there its law is still active.

@@ -13,7 +13,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexarm_env.errors import InputError
-from flexarm_env.identify.results import Candidate, Comparison, Diagnosis, Replay
+from flexarm_env.identify.explain.comparison import Comparison, Replay
+from flexarm_env.identify.results import Candidate, Diagnosis
 from flexarm_env.pictures import words
 from flexarm_env.pictures.highlight import ZOOM, most_informative_window, replay_of
 from flexarm_env.pictures.style import AFTER, BEFORE, INK, MEASURED, QUIET, STYLE

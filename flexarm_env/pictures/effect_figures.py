@@ -6,8 +6,8 @@ import numpy as np
 import plotly.graph_objects as go
 
 from flexarm_env.experiments.next_run import NextRun
+from flexarm_env.identify.explain.comparison import Comparison
 from flexarm_env.identify.explain.effect_curve import UNITS, EffectCurve
-from flexarm_env.identify.results import Comparison
 from flexarm_env.pictures import words
 from flexarm_env.pictures.highlight import CLOSE, most_informative_window, replay_of
 from flexarm_env.pictures.overlays import title

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexarm_env.identify.results import Comparison, Replay
+from flexarm_env.identify.explain.comparison import Comparison, Replay
 from flexarm_env.pictures import words
 
 ZOOM, CLOSE = 1.6, 0.8  # [s], in print and on a page that may be a phone's

@@ -9,7 +9,8 @@ from html import escape
 import numpy as np
 
 from flexarm_env.arm import Arm, short_name
-from flexarm_env.identify.results import Comparison, Diagnosis
+from flexarm_env.identify.explain.comparison import Comparison
+from flexarm_env.identify.results import Diagnosis
 from flexarm_env.pictures import words
 from flexarm_env.recordings.recording import Recording
 

@@ -9,7 +9,8 @@ from plotly.subplots import make_subplots
 
 from flexarm_env.arm import Arm
 from flexarm_env.experiments.simulate import simulate
-from flexarm_env.identify.results import Comparison, Diagnosis
+from flexarm_env.identify.explain.comparison import Comparison
+from flexarm_env.identify.results import Diagnosis
 from flexarm_env.pictures import bars, overlays, words
 from flexarm_env.pictures.highlight import most_informative_window, replay_of
 from flexarm_env.recordings.recording import Recording

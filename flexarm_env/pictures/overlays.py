@@ -8,7 +8,7 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from flexarm_env.identify.results import Comparison, Replay
+from flexarm_env.identify.explain.comparison import Comparison, Replay
 from flexarm_env.pictures import words
 from flexarm_env.pictures.highlight import CLOSE, most_informative_window, replay_of
 from flexarm_env.pictures.plots import STEPS_PER_NOISE, Floats, curve, legend, with_layout

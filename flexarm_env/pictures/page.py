@@ -8,8 +8,9 @@ from html import escape
 from typing import Any
 
 from flexarm_env.identify.calibrate.estimate import Estimate
+from flexarm_env.identify.explain.comparison import Comparison
 from flexarm_env.identify.explain.effect_curve import EffectCurve
-from flexarm_env.identify.results import Comparison, Diagnosis
+from flexarm_env.identify.results import Diagnosis
 from flexarm_env.pictures import bars, effect_figures, overlays, residuals, words
 from flexarm_env.pictures.document import bullets, document, figure, folded, panels, paragraph, section, table
 from flexarm_env.pictures.highlight import replay_of, worst_signals

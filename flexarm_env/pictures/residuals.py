@@ -11,7 +11,7 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 from scipy.signal import welch
 
-from flexarm_env.identify.results import Comparison, Replay
+from flexarm_env.identify.explain.comparison import Comparison, Replay
 from flexarm_env.pictures.overlays import AS_GIVEN, CORRECTED, band
 from flexarm_env.pictures.plots import Floats, digits, in_steps, legend, with_layout
 from flexarm_env.pictures.style import AFTER_LINE, BEFORE_LINE, INK, REGIMES

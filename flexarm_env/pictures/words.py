@@ -7,7 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from flexarm_env.arm import short_name
 from flexarm_env.identify.calibrate.estimate import Estimate
-from flexarm_env.identify.results import Addition, Candidate, Comparison, Diagnosis
+from flexarm_env.identify.explain.comparison import Comparison
+from flexarm_env.identify.results import Addition, Candidate, Diagnosis
 from flexarm_env.sensors import known_sensors
 
 NOTHING = "–"

@@ -12,7 +12,8 @@ from flexarm_env.recordings.recording import Recording
 from flexarm_env.terminal.progress import progress
 
 if TYPE_CHECKING:
-    from flexarm_env.identify.results import Addition, Comparison, Diagnosis, Fit
+    from flexarm_env.identify.explain.comparison import Comparison
+    from flexarm_env.identify.results import Addition, Diagnosis, Fit
 
 
 def compare(arm: Arm, recordings: Sequence[Recording]) -> Comparison:

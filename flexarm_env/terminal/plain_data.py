@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 from flexarm_env.pictures import words
 
 if TYPE_CHECKING:
-    from flexarm_env.identify.results import Addition, Comparison, Fit
+    from flexarm_env.identify.explain.comparison import Comparison
+    from flexarm_env.identify.results import Addition, Fit
 
 
 def of_comparison(result: Comparison) -> dict[str, Any]:

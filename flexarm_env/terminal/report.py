@@ -8,8 +8,9 @@ from typing import Any
 
 import flexarm_env
 from flexarm_env.files import write_whole
+from flexarm_env.identify.explain.comparison import Comparison
 from flexarm_env.identify.explain.effect_curve import UNITS, EffectCurve, effect_curve, unexplained_curve
-from flexarm_env.identify.results import Comparison, Diagnosis
+from flexarm_env.identify.results import Diagnosis
 from flexarm_env.recordings.recording import Recording
 from flexarm_env.terminal.progress import Progress
 

@@ -11,7 +11,8 @@ from rich.table import Table
 from rich.text import Text
 
 from flexarm_env.identify.calibrate.estimate import Estimate
-from flexarm_env.identify.results import Addition, Comparison, Diagnosis, Fit, Row
+from flexarm_env.identify.explain.comparison import Comparison, Row
+from flexarm_env.identify.results import Addition, Diagnosis, Fit
 from flexarm_env.pictures import words
 from flexarm_env.pictures.highlight import error_by_second
 from flexarm_env.pictures.words import NOTHING, PARTS, label_of, number, unit_of

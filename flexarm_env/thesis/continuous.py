@@ -13,7 +13,7 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.plant import layout
 from flexarm_env.thesis.constants import TABLE
-from flexarm_env.thesis.kernels import player
+from flexarm_env.thesis.kernels import LawArrays, PlantArrays, player
 from flexarm_env.thesis.law import Law
 from flexarm_env.thesis.runs import DURATION, INTERVAL, RUN_AWAY, Run, clock
 
@@ -37,13 +37,11 @@ def run(arm: Arm, law: Law, duration: float = DURATION, step: float = STEP) -> R
     plant.place()
     kernel = plant.kernel
     out = np.zeros((round(duration / (stride * step)), len(arm.signals) + 2))
-    numbers, past = law.packed(step)
     per_strain = 1.0 / (arm.sensors["strain_base"]["gain"] * TABLE["N"])
     settings = np.array([per_strain, step, RUN_AWAY, layout.COMMAND, layout.MODE])
-    count = player()(
-        kernel.measure, kernel.drive_output, kernel.control_step, plant.constants, plant.layout, plant.state, plant.scratch,
-        numbers, past, settings, stride, out,
-    )  # fmt: skip
+    arrays = PlantArrays(plant.constants, plant.layout, plant.state, plant.scratch)
+    kernels = kernel.measure, kernel.drive_output, kernel.control_step
+    count = player()(*kernels, arrays, LawArrays(*law.packed(step)), settings, stride, out)
     out = out[:count]
     signals = {signal: out[:, i].copy() for i, signal in enumerate(arm.signals)}
     return Run(clock(count, stride * step), out[:, -2].copy(), signals, out[:, -1] > 0.0, np.full(count, law.target))

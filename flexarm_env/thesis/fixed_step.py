@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.thesis.constants import LENGTH, MASS_PER_LENGTH, MODULUS, SECOND_MOMENT, TABLE
-from flexarm_env.thesis.kernels import march
+from flexarm_env.thesis.kernels import Beam, LawArrays, march
 from flexarm_env.thesis.law import Law
 
 Floats = NDArray[np.float64]
@@ -131,13 +131,12 @@ def simulate(model: Model, law: Law, duration: float, step: float, every: float)
         (samples, 5): hub angle [rad], motor speed [rad/s], strain [V], current [A], whether the hub is stuck.
     """
     samples, stride = round(duration / every), round(every / step)
-    beam = np.zeros((3, 3))
-    beam[1:, 1:] = np.linalg.inv(model.mass[1:, 1:])
-    numbers, past = law.packed(step)
-    body = np.array([TABLE["N"], TABLE["kphi"], model.coulomb, model.static])
+    clamped = np.zeros((3, 3))
+    clamped[1:, 1:] = np.linalg.inv(model.mass[1:, 1:])
+    beam = Beam(
+        np.linalg.inv(model.mass), clamped, model.mass[0].copy(), model.damping, model.stiffness, model.moment, model.strain
+    )
+    friction = np.array([TABLE["N"], TABLE["kphi"], model.coulomb, model.static])
     out = np.zeros((samples, 5))
-    march(
-        np.linalg.inv(model.mass), beam, model.mass[0].copy(), model.damping, model.stiffness, model.moment, model.strain,
-        body, numbers, past, step, stride, out,
-    )  # fmt: skip
+    march(beam, friction, LawArrays(*law.packed(step)), step, stride, out)
     return out

@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 
 from flexarm_env.arm import Arm
-from flexarm_env.arm_file import arm_from_table
-from flexarm_env.effects import catalogue
 from flexarm_env.errors import InputError
 from flexarm_env.experiments.plans import SQUARE_ANGLE
 from flexarm_env.experiments.simulate import simulate
@@ -39,7 +37,7 @@ def arm() -> Arm:
 
 
 def rigid(**sensors: dict[str, float]) -> Arm:
-    return arm_from_table({**RIGID, "sensors": sensors or RIGID["sensors"]}, "rigid", catalogue())
+    return Arm.from_table({**RIGID, "sensors": sensors or RIGID["sensors"]}, "rigid")
 
 
 def bits(recording: Recording) -> list[bytes]:

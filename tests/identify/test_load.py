@@ -9,7 +9,7 @@ import pytest
 import rig
 
 from flexarm_env import Arm, InputError, Recording, compare, diagnose, fit, simulate
-from flexarm_env.identify.results import Comparison
+from flexarm_env.identify.explain.comparison import Comparison
 
 PAYLOAD = 0.3
 

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
+from flexarm_env.identify.explain.comparison import Comparison, Replay, Row
 from flexarm_env.identify.progress import Report
 from flexarm_env.identify.replay.dataset import Dataset, prepare
 from flexarm_env.identify.replay.preflight import preflight
 from flexarm_env.identify.replay.replay import replay, window_observers, window_replay
 from flexarm_env.identify.replay.run import Run
-from flexarm_env.identify.results import Comparison, Replay, Row
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.recordings.recording import Recording
 
