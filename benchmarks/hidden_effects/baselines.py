@@ -24,7 +24,7 @@ def stepwise(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
     "first_step" holds the answer of `best_fit_wins`, which is the first step, with the core seconds spent after it.
     """
     calibrator = Calibrator(*prepare(arm, recordings))
-    base = found = calibrator.constants()
+    base = found = calibrator.calibrate_constants()
     effects: list[str] = []
     first: dict[str, Any] = {}
     stepped = 0.0

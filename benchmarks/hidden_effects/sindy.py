@@ -77,7 +77,7 @@ def sparse_effects(arm: Arm, recordings: Sequence[Recording]) -> list[str]:
 def sindy_on_residuals(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
     """Name the effects that SINDy finds in the refitted arm's residual torque, and refit the arm with the first three."""
     calibrator = Calibrator(*prepare(arm, recordings))
-    base = found = calibrator.constants()
+    base = found = calibrator.calibrate_constants()
     effects = sparse_effects(base.arm, recordings)[:3]
     if effects:
         with_them = base.arm

@@ -42,7 +42,7 @@ def conclude(
     model = trace.model if verdict == "effects" else base
     accepted = trace.accepted if verdict == "effects" else ()
     with calibrator.workers.threads():
-        final = calibrator.on_everything(model.calibration)
+        final = calibrator.calibrate_on_all_data(model.calibration)
         values = estimates(final, nominal)
         ranking = _ranking(trace, [a.effect for a in accepted], values, nominal)
     scores = {"nominal": nominal_score, "refitted": base.score, **{a.effect: a.score for a in accepted}, "final": model.score}

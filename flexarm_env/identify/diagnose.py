@@ -9,8 +9,7 @@ from dataclasses import replace
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.conclude import conclude, insufficient, with_outlook
-from flexarm_env.identify.fit import calibrate_constants
-from flexarm_env.identify.progress import Progress, Report
+from flexarm_env.identify.progress import Progress, ProgressCallback
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.error_measure import error_measure
 from flexarm_env.identify.replay.hold_out import hold_out_notes
@@ -27,7 +26,7 @@ from flexarm_env.recordings.recording import Recording
 def diagnose(
     arm: Arm,
     recordings: Sequence[Recording],
-    progress: Report | None = None,
+    progress: ProgressCallback | None = None,
     seed: int = 0,
     jobs: int = 2,
     settings: Settings = SETTINGS,
@@ -63,23 +62,23 @@ def diagnose(
     notes, too_poor = preflight(dataset)
     calibrator = Calibrator(nominal, dataset, Workers(jobs))
     if too_poor:
-        return _signed(insufficient(arm, calibrator), notes, began, seed)
+        return _with_run_facts(insufficient(arm, calibrator), notes, began, seed)
 
-    constants.at(1.0, "refitting the constants")
+    constants.at(0.0, "refitting the constants")
     with calibrator.workers.threads():
-        calibrator, calibration = calibrate_constants(calibrator)
+        calibrator, calibration = calibrator.choose_hold_out()  # all that follows is judged on its dataset
     base = judge((), calibration, calibrator.dataset)
-    before = calibrator.score(nominal)
-    rules = criteria(before, base.score, error_measure(nominal).judges_free_run, settings)
+    nominal_score = calibrator.score(nominal)
+    rules = criteria(nominal_score, base.score, error_measure(nominal).judges_free_run, settings)
 
     trace = Search(calibrator, rules).run(base, searching)
 
     verdict = rules.verdict(trace.effects, trace.model.score)
-    found = conclude(verdict, trace, before, arm, recordings, calibrator, seed)
+    found = conclude(verdict, trace, nominal_score, arm, recordings, calibrator, seed)
     outlook.at(0.0, "estimating detection limits")
     found = with_outlook(found, trace, calibrator)
-    return _signed(found, notes + hold_out_notes(calibrator.dataset), began, seed)
+    return _with_run_facts(found, notes + hold_out_notes(calibrator.dataset), began, seed)
 
 
-def _signed(found: Diagnosis, notes: list[str], began: float, seed: int) -> Diagnosis:
+def _with_run_facts(found: Diagnosis, notes: list[str], began: float, seed: int) -> Diagnosis:
     return replace(found, notes=notes + found.notes, seconds=time.perf_counter() - began, seed=seed)

@@ -13,9 +13,8 @@ from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.calibrate.intervals import estimates
 from flexarm_env.identify.calibrate.parameters import free_parameters
 from flexarm_env.identify.origin import with_origin
-from flexarm_env.identify.progress import Progress, Report
+from flexarm_env.identify.progress import Progress, ProgressCallback
 from flexarm_env.identify.replay.dataset import prepare
-from flexarm_env.identify.replay.hold_out import hold_out_late
 from flexarm_env.identify.results import Addition, Fit
 from flexarm_env.identify.select.screen import attempt
 from flexarm_env.identify.select.signatures import baselines, signatures
@@ -27,7 +26,7 @@ from flexarm_env.recordings.recording import Recording
 def fit(
     arm: Arm,
     recordings: Sequence[Recording],
-    progress: Report | None = None,
+    progress: ProgressCallback | None = None,
     seed: int = 0,
     jobs: int = 2,
     settings: Settings = SETTINGS,
@@ -63,9 +62,9 @@ def fit(
     calibrator = Calibrator(nominal, dataset, Workers(jobs))
     say.at(0.0, "refitting the constants")
     with calibrator.workers.threads():
-        found = calibrator.constants()
+        found = calibrator.calibrate_constants()
         before, after = calibrator.score(nominal), calibrator.score(found.arm)
-        final = calibrator.on_everything(found)
+        final = calibrator.calibrate_on_all_data(found)
         values = estimates(final, nominal)
     say.at(1.0, "done")
     return Fit(
@@ -81,7 +80,7 @@ def add(
     effect: str,
     arm: Arm,
     recordings: Sequence[Recording],
-    progress: Report | None = None,
+    progress: ProgressCallback | None = None,
     seed: int = 0,
     jobs: int = 2,
     settings: Settings = SETTINGS,
@@ -117,11 +116,11 @@ def add(
     constants.at(0.0, "refitting the constants")
     workers = Workers(jobs)
     with workers.threads():
-        calibrator, base = calibrate_constants(Calibrator(nominal, dataset, workers))
+        calibrator, base = Calibrator(nominal, dataset, workers).choose_hold_out()
         adding.at(0.0, f"adding {effect}")
         found = calibrate_with_effect(calibrator, base, effect)
         scores = [calibrator.score(a) for a in (nominal, base.arm, found.arm)]
-        final = calibrator.on_everything(found)
+        final = calibrator.calibrate_on_all_data(found)
         values = _effect_first(estimates(final, nominal), effect)
     adding.at(1.0, "done")
     names = ("nominal", "refitted", "final")
@@ -133,16 +132,6 @@ def add(
         free_run={name: s.free_run for name, s in zip(names, scores, strict=True)},
         seconds=time.perf_counter() - began,
     )
-
-
-def calibrate_constants(calibrator: Calibrator) -> tuple[Calibrator, Calibration]:
-    """Calibrate the constants; once more, with less held out, where what the arm lacks shows late in the recordings."""
-    found = calibrator.constants()
-    later = hold_out_late(found.arm, calibrator.dataset)
-    if later is calibrator.dataset:
-        return calibrator, found
-    calibrator = Calibrator(calibrator.nominal, later, calibrator.workers)
-    return calibrator, calibrator.constants()
 
 
 def calibrate_with_effect(calibrator: Calibrator, base: Calibration, effect: str) -> Calibration:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-Report = Callable[[float, str], None]
+ProgressCallback = Callable[[float, str], None]
 
 
 def _silent(done: float, text: str) -> None:
-    """Report nothing."""
+    """ProgressCallback nothing."""
 
 
 @dataclass(frozen=True)
@@ -29,17 +29,17 @@ class Progress:
         0.25 fitting
     """
 
-    report: Report = _silent
+    report: ProgressCallback = _silent
     start: float = 0.0
     end: float = 1.0
 
     @classmethod
-    def to(cls, report: Report | None) -> Progress:
-        """Report to a function, or nowhere."""
+    def to(cls, report: ProgressCallback | None) -> Progress:
+        """ProgressCallback to a function, or nowhere."""
         return cls() if report is None else cls(report)
 
     def at(self, done: float, text: str) -> None:
-        """Report the share of this span that is done."""
+        """ProgressCallback the share of this span that is done."""
         self.report(self.start + done * (self.end - self.start), text)
 
     def split(self, *weights: int) -> tuple[Progress, ...]:

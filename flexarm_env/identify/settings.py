@@ -89,7 +89,7 @@ class Preparation:
     fewest_levels: int = tuned(4, "A command with no more levels than this is a square wave, not a saturated one.")
     settling: float = tuned(
         0.05,
-        "Where torque noise is stated, errors count from this time on: before, they show how far the start was off.",
+        "Where torque noise is stated, calibrations ignore errors before this time: they show an uncertain start.",
         "the published recipe for EMPS drops its first 49 ms (Janot, Gautier and Brunot 2019)",
         "s",
     )

@@ -43,7 +43,7 @@ def problem_of(payload=0.0):
 def test_motion_is_the_same_on_every_scale():
     problem, x, powers = problem_of()
     other = rescale(problem.parameters, x, powers, 0.3)
-    arm = problem.parameters.place(problem.arm, other)
+    arm = problem.parameters.apply(problem.arm, other)
     for path, power in (("hub.inertia", 1), ("effects.cable_stiffness.stiffness", 1), ("sensors.strain_mid.gain", -1)):
         assert arm.value(path) == pytest.approx(np.exp(0.3 * power) * problem.arm.value(path), rel=1e-12)
     assert arm.value("effects.cable_stiffness.rest_angle") == problem.arm.value("effects.cable_stiffness.rest_angle")

@@ -59,6 +59,6 @@ def test_recordings_keep_what_is_held_out_where_little_would_be_left():
     """A motor that runs down: most samples lie in its first slope, and two show that it stops."""
     model, recordings = tables.experiment_3()
     nominal, data = prepare(model, recordings)
-    later = hold_out_late(Calibrator(nominal, data).constants().arm, data)
+    later = hold_out_late(Calibrator(nominal, data).calibrate_constants().arm, data)
     assert [run.train.tolist() for run in later.runs] == [run.train.tolist() for run in data.runs]
     assert hold_out_notes(later) == []

@@ -71,7 +71,7 @@ def test_an_offset_of_a_gage_is_no_motion_of_an_arm_that_is_driven_at_once(offse
     (run,) = data.runs
     assert not run.start.moving
     plant = data.plants(nominal)[run.payload]
-    data.place(plant, run)
+    data.set_initial_state(plant, run)
     assert not np.any(plant.physical())
 
 

@@ -20,7 +20,7 @@ from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.screen import Trial
 from flexarm_env.identify.select.search import Search, exchange
 from flexarm_env.identify.select.starts import rivals_of
-from flexarm_env.identify.select.swap import Comparison
+from flexarm_env.identify.select.swap import RivalComparison
 from flexarm_env.identify.select.trace import Accepted, Trace, Tried
 from flexarm_env.recordings.recording import Recording
 
@@ -33,7 +33,7 @@ TRUE = {
 def begun(nominal: Arm, recordings: list[Recording]) -> tuple[Search, Trace]:
     """A search that has calibrated the constants."""
     calibrator = Calibrator(*prepare(nominal, recordings))
-    base = judge((), calibrator.constants(), calibrator.dataset)
+    base = judge((), calibrator.calibrate_constants(), calibrator.dataset)
     before = calibrator.score(calibrator.nominal)
     judges_free_run = error_measure(calibrator.nominal).judges_free_run
     criteria = ThresholdCriteria(before, base.score, judges_free_run, calibrator.settings)
@@ -63,7 +63,7 @@ def test_an_effect_that_began_too_large_begins_again(monkeypatch):
     arm, data = prepare(nominal, [simulate(made, "pulse", seed=1, duration=5.0)])
     monkeypatch.setattr(fits, "candidates", lambda arm: ["backlash", "current_lag"])
     calibrator = Calibrator(arm, data)
-    base = calibrator.constants()
+    base = calibrator.calibrate_constants()
     found = fits.fit_with_all_constants(calibrator, base, [Trial("", base.arm, 0.0, 0.0)], [], Progress())
     assert found[0].effects == ("backlash",)
     assert found[0].arm.effects["backlash"]["gap"] == pytest.approx(0.0007, rel=0.1)
@@ -94,7 +94,7 @@ def test_an_effect_in_anothers_place_keeps_the_error_after_it():
     taken = model("constant_torque", "tach_filter")
     alike = {"asymmetric_coulomb": model("asymmetric_coulomb", "tach_filter")}
     tried = frozenset(["cable_stiffness", "base_tilt", *alike, "constant_torque"])
-    trace = exchange(two_accepted(), 0, Comparison("constant_torque", taken, alike, tried))
+    trace = exchange(two_accepted(), 0, RivalComparison("constant_torque", taken, alike, tried))
     first, second = trace.accepted
     assert (first.effect, first.score) == ("constant_torque", Score(3.0, 3.0))
     assert (second.effect, second.score) == ("tach_filter", Score(1.0, 1.0))
@@ -106,7 +106,7 @@ def test_an_effect_in_anothers_place_keeps_the_error_after_it():
 def test_rivals_that_lost_are_equivalent_no_more():
     before = two_accepted()
     tried = frozenset(["cable_stiffness", "base_tilt", "constant_torque"])
-    trace = exchange(before, 0, Comparison("cable_stiffness", before.model, {}, tried))
+    trace = exchange(before, 0, RivalComparison("cable_stiffness", before.model, {}, tried))
     assert trace.accepted[0] == Accepted("cable_stiffness", ("cable_stiffness", "air_drag"), Score(3.0, 3.0))
     assert trace.model == before.model
 

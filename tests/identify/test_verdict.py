@@ -69,7 +69,7 @@ def rival(fitted: float, held: float, parameters: int = 10) -> float:
     """Its criterion on 2600 fitted and 1400 held-out samples of one signal."""
     runs = [SimpleNamespace(train=np.arange(2000) < 1300)] * 2
     own = SimpleNamespace(parameters=[None] * parameters)
-    model = Model((), own, fitted=Score(fitted, fitted), score=Score(held, held))
+    model = Model((), own, fitted_score=Score(fitted, fitted), score=Score(held, held))
     return model.bic(SimpleNamespace(runs=runs, signals=["arm_angle"]))
 
 

@@ -16,6 +16,7 @@ from flexarm_env.identify.calibrate.parameters import FitParameters, free_parame
 from flexarm_env.identify.calibrate.refine import refine
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.error_measure import Score, score
+from flexarm_env.identify.replay.hold_out import hold_out_late
 from flexarm_env.identify.replay.scales import torque_scale
 from flexarm_env.identify.settings import Settings
 from flexarm_env.identify.workers import Workers
@@ -55,12 +56,12 @@ class Calibrator:
         """
         numbers = self.settings.calibrating
         levels = self.settings.process_noise.calibration if levels is None else levels
-        return self._through(arm, self._noises(arm, levels, numbers.passes), numbers.iterations)
+        return self._run_schedule(arm, self._noises(arm, levels, numbers.passes), numbers.iterations)
 
-    def briefly(self, arm: Arm) -> tuple[float, Calibration]:
+    def calibrate_briefly(self, arm: Arm) -> tuple[float, Calibration]:
         """Calibrate an arm in a few steps; also give its error in windows on the fitted part."""
         noises = self._noises(arm, self.settings.process_noise.brief, passes=0)
-        found = self._through(arm, noises, self.settings.calibrating.brief_iterations)
+        found = self._run_schedule(arm, noises, self.settings.calibrating.brief_iterations)
         return self.score(found.arm, held_out=False).windows, found
 
     def uncalibrated(self, arm: Arm) -> Calibration:
@@ -71,13 +72,26 @@ class Calibrator:
         solution = Solution(x, np.inf, np.zeros(0), np.zeros((0, len(x))), steps)
         return Calibration(arm, solution, objective_at(arm, self.dataset, parameters, 0.0))
 
-    def constants(self) -> Calibration:
-        """Calibrate the nominal constants; stay near them where they were right already, so that nothing is gained."""
+    def calibrate_constants(self) -> Calibration:
+        """Calibrate the nominal constants; only at the arm's own torque noise where more feedback gains nothing."""
         before = self.score(self.nominal, held_out=False)
-        found, after = self.from_arm(self.nominal)
+        found, after = self.calibrate_by_best_schedule(self.nominal)
         return found if after.windows <= before.windows else self.calibrate(self.nominal, levels=())
 
-    def from_arm(self, arm: Arm) -> tuple[Calibration, Score]:
+    def choose_hold_out(self) -> tuple[Calibrator, Calibration]:
+        """Hold out less where the calibrated constants show that what the arm lacks appears late in the recordings.
+
+        Returns:
+            A calibrator of the dataset so held out, and its calibration of the constants.
+        """
+        found = self.calibrate_constants()
+        later = hold_out_late(found.arm, self.dataset)
+        if later is self.dataset:
+            return self, found
+        calibrator = replace(self, dataset=later)
+        return calibrator, calibrator.calibrate_constants()
+
+    def calibrate_by_best_schedule(self, arm: Arm) -> tuple[Calibration, Score]:
         """Calibrate from an arm; also give the errors on the fitted part.
 
         A model that ends off, but not so far that something must be missing, may have constants that compensate each other. With
@@ -91,7 +105,7 @@ class Calibrator:
         then = self.score(other.arm, held_out=False)
         return (other, then) if then.windows < after.windows else (found, after)
 
-    def or_from_nominal(self, found: Calibration) -> Calibration:
+    def restart_from_nominal(self, found: Calibration) -> Calibration:
         """Choose the better of a calibration and another that starts from the nominal constants with its effects.
 
         Constants that compensated for a missing effect may have moved to where there is no way back.
@@ -99,7 +113,7 @@ class Calibrator:
         now = self.score(found.arm, held_out=False)
         if now.windows < self.settings.errors.calibrated:
             return found
-        other, then = self.from_arm(self.nominal_with_effects_of(found.arm))
+        other, then = self.calibrate_by_best_schedule(self.nominal_with_effects_of(found.arm))
         return other if then.is_better_than(now) else found
 
     def polish(self, found: Calibration) -> Calibration:
@@ -109,7 +123,7 @@ class Calibrator:
         backlash, one more may end at the noise.
         """
         errors, process_noise = self.settings.errors, self.settings.process_noise
-        found = self.or_from_nominal(found)
+        found = self.restart_from_nominal(found)
         now = self.score(found.arm, held_out=False)
         near = errors.near < now.windows < errors.close
         again = (process_noise.calibration,) * self.settings.calibrating.continuations
@@ -124,7 +138,7 @@ class Calibrator:
                 break
         return found
 
-    def on_everything(self, found: Calibration) -> Calibration:
+    def calibrate_on_all_data(self, found: Calibration) -> Calibration:
         """Continue a calibration on all of the data and refine it: what is kept once nothing is left to judge."""
         numbers, parameters = self.settings.calibrating, found.parameters
         objective = objective_at(found.arm, self.dataset.nothing_held_out(), parameters, found.objective.torque_noise)
@@ -133,7 +147,7 @@ class Calibrator:
         steps, iterations, tolerance = found.solution.steps, numbers.last_iterations, numbers.final_tolerance
         solution = minimise(objective.residual, x, prior, steps, self.settings.least_squares, iterations, tolerance)
         refined = replace(solution, x=refine(objective, solution.x))
-        return Calibration(parameters.place(found.arm, refined.x), refined, objective, solution.x - x)
+        return Calibration(parameters.apply(found.arm, refined.x), refined, objective, solution.x - x)
 
     def nominal_with_effects_of(self, arm: Arm) -> Arm:
         """Give the nominal arm the effects that another has beside its own."""
@@ -155,7 +169,7 @@ class Calibrator:
         noises = [level * scale for level in levels if level * scale > own]
         return noises + [own] * (passes if noises else max(passes, 1))
 
-    def _through(self, arm: Arm, noises: Sequence[float], iterations: int) -> Calibration:
+    def _run_schedule(self, arm: Arm, noises: Sequence[float], iterations: int) -> Calibration:
         settings = self.settings
         tolerances = [settings.calibrating.tolerance] * (len(noises) - 1) + [settings.calibrating.final_tolerance]
         parameters: FitParameters = free_parameters(arm, self.nominal, self.dataset)
@@ -163,10 +177,11 @@ class Calibrator:
         steps = parameters.step_sizes(x, settings.parameters)
         for number, (noise, tolerance) in enumerate(zip(noises, tolerances, strict=True), start=1):
             objective = objective_at(arm, self.dataset, parameters, noise)
-            objective = objective.weighted_by(parameters.place(arm, x))
-            if number == len(noises) >= settings.calibrating.passes:
+            objective = objective.weighted_by(parameters.apply(arm, x))
+            is_last_of_several = number == len(noises) >= settings.calibrating.passes
+            if is_last_of_several:
                 steps = steps.narrowed(settings.least_squares.narrow)
             prior = objective.weights.prior
             solution = minimise(objective.residual, x, prior, steps, settings.least_squares, iterations, tolerance)
             x, steps = solution.x, solution.steps
-        return Calibration(parameters.place(arm, x), solution, objective)
+        return Calibration(parameters.apply(arm, x), solution, objective)

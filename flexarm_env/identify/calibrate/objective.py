@@ -74,7 +74,7 @@ class Objective:
 
     def residual(self, x: Floats) -> Floats:
         """Compute the errors over sigma (rows,), run by run, sample by sample, signal by signal."""
-        return self.residual_of(self.parameters.place(self.arm, x))
+        return self.residual_of(self.parameters.apply(self.arm, x))
 
     def residual_of(self, arm: Arm) -> Floats:
         """Compute the residual of another arm under the same weights."""

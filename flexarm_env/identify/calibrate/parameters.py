@@ -96,7 +96,7 @@ class FitParameters:
         """Pair each parameter with its x."""
         return zip(self.items, (float(v) for v in x), strict=True)
 
-    def place(self, arm: Arm, x: Floats) -> Arm:
+    def apply(self, arm: Arm, x: Floats) -> Arm:
         """Give an arm the values at x."""
         return arm.with_values({parameter.path: parameter.value(v) for parameter, v in self.pairs(x)})
 

@@ -88,12 +88,12 @@ def _descend(objective: Objective, x: Floats, levels: Sequence[float]) -> Floats
 
 def _at_level(objective: Objective, x: Floats, torque_noise: float) -> Objective:
     level = objective_at(objective.arm, objective.dataset, objective.parameters, torque_noise)
-    return level.weighted_by(objective.parameters.place(objective.arm, x), narrow_priors=False)
+    return level.weighted_by(objective.parameters.apply(objective.arm, x), narrow_priors=False)
 
 
 def _error(objective: Objective, x: Floats) -> float:
     """Compute the rms error of a whole replay over the noise."""
-    errors = objective.errors_of(objective.parameters.place(objective.arm, x))
+    errors = objective.errors_of(objective.parameters.apply(objective.arm, x))
     return float(np.sqrt(np.mean((np.concatenate(errors) / objective.dataset.noise) ** 2)))
 
 

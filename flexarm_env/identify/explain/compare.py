@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.explain.comparison import Comparison, Replay, Row
-from flexarm_env.identify.progress import Report
+from flexarm_env.identify.progress import ProgressCallback
 from flexarm_env.identify.replay.dataset import Dataset, prepare
 from flexarm_env.identify.replay.preflight import preflight
 from flexarm_env.identify.replay.replay import replay, window_observers, window_replay
@@ -23,7 +23,7 @@ REGIMES = ("stuck", "moving slowly", "moving fast")
 
 
 def compare(
-    arm: Arm, recordings: Sequence[Recording], progress: Report | None = None, settings: Settings = SETTINGS
+    arm: Arm, recordings: Sequence[Recording], progress: ProgressCallback | None = None, settings: Settings = SETTINGS
 ) -> Comparison:
     """Replay recordings through an arm and measure where it fails. Nothing is fitted, so all samples count.
 

@@ -23,7 +23,7 @@ class Replay:
         measured: (samples,) by signal, SI units.
         free: (samples,) by signal: replayed once from the start.
         windows: (samples,) by signal: replayed in windows of 1 s from estimated states.
-        regime: (samples,) 0 stuck, 1 moving slowly, 2 moving fast, from the model's free motion.
+        regime: (samples,) 0 stuck, 1 moving slowly, 2 moving fast, from the measured motion.
     """
 
     name: str

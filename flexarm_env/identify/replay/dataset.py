@@ -48,19 +48,19 @@ class Dataset:
         """The runs cut down to the part that calibrations see."""
         return tuple(run.first(int(run.train.sum())) for run in self.runs)
 
-    def part(self, held_out: bool) -> tuple[Run, ...]:
-        """Choose the runs on which the held-out or the fitted part is replayed: what is held out comes last."""
+    def runs_to_replay(self, held_out: bool) -> tuple[Run, ...]:
+        """Choose the runs to replay: whole ones for the held-out part, which comes last; else the fitted part alone."""
         return self.runs if held_out else self.fitted
 
     def plants(self, arm: Arm) -> dict[float, Plant]:
         """Build an arm's plants by the payload [kg] of the runs, which carry it."""
         return plants_by_payload(arm, (run.payload for run in self.runs), self.interval)
 
-    def place(self, plant: Plant, run: Run) -> None:
-        """Put a plant into the initial state of a run."""
+    def set_initial_state(self, plant: Plant, run: Run) -> None:
+        """Fit the initial state to the first samples of a run, and put a plant into it."""
         count = run.start.samples
         stretch = run.command[:count], run.intervals[:count], run.measured[:count]
-        Stretch(run.start, *stretch, self.noise, self.settings.initial_states).place(plant)
+        Stretch(run.start, *stretch, self.noise, self.settings.initial_states).set_fitted_state(plant)
 
     def nothing_held_out(self) -> Dataset:
         """Give the same runs with nothing held out."""

@@ -85,7 +85,7 @@ class WindowErrors:
         observers = {payload: window_observers(arm, plant, dataset) for payload, plant in plants.items()}
         totals = np.zeros(2)
         count = 0
-        for run in dataset.part(held_out):
+        for run in dataset.runs_to_replay(held_out):
             rows = ~run.train if held_out else run.train
             plant, first = plants[run.payload], int(np.argmax(rows))
             windows = window_replay(plant, run, dataset, observers[run.payload], first)

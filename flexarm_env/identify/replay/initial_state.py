@@ -118,8 +118,8 @@ class Stretch:
         """The command before the first sample: none at rest, where states that lag behind commands begin at zero."""
         return float(self.command[0]) if self.start.moving else 0.0
 
-    def place(self, plant: Plant) -> None:
-        """Put a plant into the state that meets the stretch best."""
+    def set_fitted_state(self, plant: Plant) -> None:
+        """Fit the state to the stretch, and put a plant into it."""
         start = self.start
         state = np.zeros(plant.states)
         hub, modes = _hub_directions(plant), _mode_directions(plant, self.settings.modes) if start.vibrating else []

@@ -23,7 +23,7 @@ def preflight(dataset: Dataset) -> tuple[list[str], bool]:
         at_limit = np.abs(run.command) >= numbers.at_limit * np.abs(run.command).max()
         varies = np.ptp(run.command) > 0.0 and len(np.unique(run.command)) > numbers.fewest_levels
         if at_limit.mean() > numbers.much_at_limit and varies:
-            notes.append(f"{run.name}: the command stands at its limit {100 * at_limit.mean():.0f} % of the time")
+            notes.append(f"{run.name}: the command stays at its largest value {100 * at_limit.mean():.0f} % of the time")
     length = sum(run.time[-1] for run in dataset.runs)
     turns = np.array([signal == "motor_speed" for signal in dataset.signals])  # steadily, too
     motion = max(

@@ -29,7 +29,7 @@ def replay(plant: Plant, run: Run, dataset: Dataset, gains: Floats | None = None
     Returns:
         The readings (samples, signals), SI units.
     """
-    dataset.place(plant, run)
+    dataset.set_initial_state(plant, run)
     if gains is None:
         return plant.replay(run.command, run.intervals, NO_GAINS, NOT_MEASURED)
     return plant.replay(run.command, run.intervals, modal_gains(plant, gains), run.measured)
@@ -58,7 +58,7 @@ def window_replay(plant: Plant, run: Run, dataset: Dataset, observers: Sequence[
     out = np.empty_like(run.measured)
     command = plant.delayed(run.command)
     for gains in observers:
-        dataset.place(plant, run)
+        dataset.set_initial_state(plant, run)
         for w, start in enumerate(starts):
             part = slice(start, start + length + 1)
             intervals = run.intervals[part] if len(run.intervals) else run.intervals
@@ -75,7 +75,7 @@ def window_replay(plant: Plant, run: Run, dataset: Dataset, observers: Sequence[
     return out
 
 
-def window_observers(arm: Arm, plant: Plant, dataset: Dataset, levels: Sequence[float] = ()) -> list[Floats]:
+def window_observers(arm: Arm, plant: Plant, dataset: Dataset, levels: Sequence[float] | None = None) -> list[Floats]:
     """Compute the kernel's gains of the replays whose states windows start from.
 
     Args:
@@ -87,7 +87,7 @@ def window_observers(arm: Arm, plant: Plant, dataset: Dataset, levels: Sequence[
     Returns:
         No gains first, then those of each level.
     """
-    levels = levels or dataset.settings.process_noise.windows
+    levels = dataset.settings.process_noise.windows if levels is None else levels
     scale, own = torque_scale(arm, dataset.runs), arm.constants["drive"]["torque_noise"]
     noises = sorted({max(level * scale, own) for level in levels})
     return [NO_GAINS, *(modal_gains(plant, observer_gains(arm, plant, dataset, noise)) for noise in noises)]

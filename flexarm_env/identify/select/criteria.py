@@ -164,7 +164,7 @@ class ThresholdCriteria:
 
     def leaves_room(self, found: Model) -> bool:
         """Whether held-out or fitted errors are above the noise."""
-        return max(found.score.windows, found.fitted.windows) > self.settings.errors.at_noise
+        return max(found.score.windows, found.fitted_score.windows) > self.settings.errors.at_noise
 
     def replaces(self, rival: Model, now: Model, rank: Callable[[Model], float]) -> bool:
         """Whether the rival ranks first; by a share of the excess, where the model does not come near the noise."""

@@ -42,7 +42,7 @@ def fit_model(calibrator: Calibrator, effects: tuple[str, ...], arm: Arm, thorou
     """Calibrate an arm with effects; if thorough, from the nominal constants as well."""
     found = calibrator.calibrate(arm)
     if thorough:
-        found = calibrator.or_from_nominal(found)
+        found = calibrator.restart_from_nominal(found)
     return judge(effects, found, calibrator.dataset)
 
 
@@ -114,7 +114,7 @@ def _start_smaller(
 def _fit_briefly(calibrator: Calibrator, arms: Sequence[tuple[str, Arm]], progress: Progress) -> dict[str, Brief]:
     """Calibrate arms briefly; keep the best of each effect."""
     fits: dict[str, Brief] = {}
-    results = calibrator.workers.map([(calibrator.briefly, (arm,)) for _, arm in arms])
+    results = calibrator.workers.map([(calibrator.calibrate_briefly, (arm,)) for _, arm in arms])
     for number, ((name, _), fit) in enumerate(zip(arms, results, strict=True), start=1):
         fits[name] = min(fit, fits.get(name, fit), key=lambda f: f[0])
         progress.at(number / len(arms), f"fitting {name or 'nothing'} and all constants")

@@ -16,16 +16,16 @@ class Model:
     """Effects that an arm was given, the calibrated arm, and its errors.
 
     Attributes:
-        effects: those that are judged here, in the order of their addition.
+        effects: those under judgement: the ones just added, or all that were accepted once a trace has taken the model.
         calibration: of the arm that has them.
         score: errors on the held-out part.
-        fitted: errors on the fitted part.
+        fitted_score: errors on the fitted part.
     """
 
     effects: tuple[str, ...]
     calibration: Calibration
     score: Score
-    fitted: Score
+    fitted_score: Score
 
     @property
     def arm(self) -> Arm:
@@ -50,7 +50,7 @@ class Model:
         signals = len(dataset.signals)
         fitted = sum(int(run.train.sum()) for run in dataset.runs) * signals
         held = sum(len(run.train) for run in dataset.runs) * signals - fitted
-        errors = fitted * self.fitted.windows**2 + held * self.score.windows**2
+        errors = fitted * self.fitted_score.windows**2 + held * self.score.windows**2
         return errors + len(self.calibration.parameters) * math.log(fitted + held)
 
 

@@ -66,7 +66,7 @@ def attempt(base: Baseline, signature: Signature | None) -> Trial:
     steps, x = added.step_sizes(start, dataset.settings.parameters), np.concatenate([base.x, start])
     numbers, iterations, tolerance = dataset.settings.least_squares, screening.iterations, screening.tolerance
     solution = minimise(objective.residual, x, prior, steps, numbers, iterations, tolerance, base.jacobian)
-    best = objective.parameters.place(arm, solution.x)
+    best = objective.parameters.apply(arm, solution.x)
     held_out = objective.held_out_residual_of(best)
     return Trial(name, best, solution.cost, float(held_out @ held_out))
 

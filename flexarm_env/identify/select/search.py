@@ -16,7 +16,7 @@ from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.propose import nearest, none_comes_near, others, starts_of_search
 from flexarm_env.identify.select.screen import Trial, control_of, screen
 from flexarm_env.identify.select.stepwise import extend_chain
-from flexarm_env.identify.select.swap import Comparison, compare_rivals
+from flexarm_env.identify.select.swap import RivalComparison, compare_rivals
 from flexarm_env.identify.select.trace import Accepted, Trace, Tried
 
 
@@ -35,21 +35,21 @@ class Search:
     def run(self, base: Model, progress: Progress) -> Trace:
         """Search from the calibrated constants: add the best effect, calibrate, again, until nothing is left or nothing helps."""
         most = self.calibrator.settings.selecting.most_effects
-        *rounds, last = progress.split(*([3] * most), 1)
+        *rounds, swapping, combining, last = progress.split(*([5, 2] * most), 2, 3, 1)
         trace = Trace.begin(base)
-        for span in rounds:
-            longer = self.add(trace, span)
+        for adding, exchanging in zip(rounds[::2], rounds[1::2], strict=True):
+            longer = self.add(trace, adding)
             added, trace = len(longer.accepted) > len(trace.accepted), longer
             if added and len(trace.accepted) > 1:  # an effect in the wrong place calls for one more
-                trace = self.swap(trace, span)
+                trace = self.swap(trace, exchanging)
             if not added or len(trace.accepted) >= most:
                 break
         if len(trace.accepted) == 1:
-            trace = self.swap(trace, last)
+            trace = self.swap(trace, swapping)
         trace = self.drop_useless(trace)
         if base.score.windows <= self.calibrator.settings.errors.explained or self.criteria.explains(trace.model.score):
             return trace
-        longer = self.combine(trace, last, all_constants=True)
+        longer = self.combine(trace, combining, all_constants=True)
         return self.drop_useless(self.swap(longer, last)) if len(longer.steps) > len(trace.steps) else longer
 
     def add(self, trace: Trace, progress: Progress) -> Trace:
@@ -198,7 +198,7 @@ class Search:
         return trace, sorted([m for m in better if measure(m.score) <= most], key=rank)
 
 
-def exchange(trace: Trace, place: int, comparison: Comparison) -> Trace:
+def exchange(trace: Trace, place: int, comparison: RivalComparison) -> Trace:
     """Put the effect that fits best in a place, with all that the recordings cannot tell from it."""
     name, now, ranking = comparison.effect, trace.accepted[place], trace.ranking
     gain = max((ranking[n].gain for n in (name, now.effect) if n in ranking), default=0.0)

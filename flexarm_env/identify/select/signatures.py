@@ -75,7 +75,7 @@ class Signature:
     factor: float = 1.0
 
 
-def baseline(found: Calibration, dataset: Dataset, levels: Sequence[float] = ()) -> Baseline:
+def baseline(found: Calibration, dataset: Dataset, levels: Sequence[float] | None = None) -> Baseline:
     """Build the baseline of a calibrated arm at the first level of process noise at which something is left to explain.
 
     Args:
@@ -85,7 +85,7 @@ def baseline(found: Calibration, dataset: Dataset, levels: Sequence[float] = ())
     """
     settings = dataset.settings
     scale, own = torque_scale(found.arm, dataset.runs), found.arm.constants["drive"]["torque_noise"]
-    for level in levels or settings.process_noise.screening:
+    for level in settings.process_noise.screening if levels is None else levels:
         torque_noise = max(level * scale, own)
         objective = objective_at(found.arm, dataset, found.parameters, torque_noise).weighted_by(found.arm)
         visible = np.sqrt(np.mean((objective.weights.sigma / dataset.noise) ** 2)) > settings.screening.visible

@@ -36,7 +36,7 @@ def extend_chain(
         step = _best_addition(calibrator, last, all_constants, progress)
         if step is None:
             return tuple(models)
-        models.append(Model((*last.effects, *step.effects), step.calibration, step.score, step.fitted))
+        models.append(Model((*last.effects, *step.effects), step.calibration, step.score, step.fitted_score))
         if step.at_bound:
             break
         if criteria.is_fully_explained(step.score):
@@ -52,7 +52,7 @@ def _best_addition(calibrator: Calibrator, last: Model, all_constants: bool, pro
     best = min(trials, key=lambda trial: trial.cost)
     if not best.effect:
         found = fit_with_all_constants(calibrator, last.calibration, trials, (), progress) if all_constants else []
-        return min(found, key=lambda m: m.fitted.windows, default=None)
+        return min(found, key=lambda m: m.fitted_score.windows, default=None)
     errors, dataset = calibrator.settings.errors, calibrator.dataset
     with calibrator.workers.threads():
         step = judge((best.effect,), calibrator.calibrate(best.arm), dataset)

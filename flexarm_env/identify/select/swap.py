@@ -13,7 +13,7 @@ from flexarm_env.identify.select.starts import rivals_of
 
 
 @dataclass(frozen=True)
-class Comparison:
+class RivalComparison:
     """An effect compared with its rivals, each beside everything else that was accepted.
 
     Attributes:
@@ -29,7 +29,7 @@ class Comparison:
     tried: frozenset[str]
 
 
-def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now: Model, progress: Progress) -> Comparison:
+def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now: Model, progress: Progress) -> RivalComparison:
     """Compare an effect of a model with its rivals.
 
     Args:
@@ -43,7 +43,7 @@ def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now:
     names = rivals_of(effect, without)
     rivals = [m for m in fit_in_place(calibrator, without, names, progress) if not m.at_bound]
     if not rivals:
-        return Comparison(effect, now, {}, frozenset([effect]))
+        return RivalComparison(effect, now, {}, frozenset([effect]))
     measure = criteria.measure([now.score, *(m.score for m in rivals)])
     rank = criteria.rank(now.score, measure, calibrator.dataset)
     rivals.sort(key=rank)
@@ -56,7 +56,7 @@ def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now:
     taken = first.effects[0] if better else effect
     level = criteria.equivalence_level(every[taken].score, measure)
     alike = {name: m for name, m in every.items() if name != taken and measure(m.score) <= level}
-    return Comparison(taken, every[taken], alike, frozenset(every))
+    return RivalComparison(taken, every[taken], alike, frozenset(every))
 
 
 def _polish_near(calibrator: Calibrator, rival: Model, now: Model) -> Model:

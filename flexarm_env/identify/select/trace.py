@@ -79,7 +79,10 @@ class Trace:
     def then(
         self, action: str, model: Model | None = None, accepted: Sequence[Accepted] | None = None, tried: Sequence[Tried] = ()
     ) -> Trace:
-        """Append a step; model and accepted effects stay as they are where they are left out."""
+        """Append a step; model and accepted effects stay as they are where they are left out.
+
+        The model is kept under the names of all accepted effects.
+        """
         taken = self.accepted if accepted is None else tuple(accepted)
         found = replace(model or self.model, effects=tuple(a.effect for a in taken))
         return replace(self, steps=(*self.steps, Step(action, found, taken, tuple(tried))))
