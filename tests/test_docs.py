@@ -21,6 +21,9 @@ import pytest
 from documents import BLOCK, DOCUMENTS, PROJECT, README, Block, blocks_of, name_of
 
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)#]*)(?:#([^)]*))?\)")
+#: A path from the root of the project, and one within identify, as the page on `diagnose` and its figure write it.
+PATH = re.compile(r"(?<![\w/.-])(?:flexarm_env|tests|docs|benchmarks|agents|configs)/[\w./-]*\w")
+WITHIN_IDENTIFY = re.compile(r"(?<![\w/.-])(?:replay|calibrate|select|explain)/\w+\.py|(?<=[`>])\w+\.py(?=[`,])")
 TIME_LIMIT = 900
 SERVES = "flexarm lab"
 
@@ -183,6 +186,21 @@ def test_links_lead_somewhere(document):
         file = (document.parent / target).resolve() if target else document
         assert file.is_file(), f"{target} is not there; `make demo` makes results/demo"
         assert not anchor or anchor in anchors(file), f"{target} has no heading #{anchor}"
+
+
+@every_document
+def test_paths_are_there(document):
+    written = {block.file for block in blocks_of(document) if block.file}
+    for path in PATH.findall(document.read_text(encoding="utf-8")):
+        assert Path(path).name in written or (PROJECT / path).exists(), path
+
+
+@pytest.mark.parametrize("name", ["how-diagnose-works.md", "how-diagnose-works.svg"])
+def test_modules_of_identify_are_there(name):
+    paths = WITHIN_IDENTIFY.findall((PROJECT / "docs" / name).read_text(encoding="utf-8"))
+    assert len(paths) > 5
+    for path in paths:
+        assert (PROJECT / "flexarm_env" / "identify" / path).is_file(), path
 
 
 @every_document
