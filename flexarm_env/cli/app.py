@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from flexarm_env.cli import arguments
-from flexarm_env.cli.options import ArmName, Columns, Effects, Json, Recordings, Report, Save, Seed
+from flexarm_env.cli.options import ArmName, Columns, Effects, Json, Recordings, RecordingsOrNone, Report, Save, Seed
 
 app = typer.Typer(
     add_completion=False,
@@ -60,7 +60,7 @@ def compare(
 
 @app.command()
 def diagnose(
-    recordings: Recordings,
+    recordings: RecordingsOrNone = None,
     arm: ArmName = "thesis",
     columns: Columns = None,
     effects: Effects = None,
@@ -71,10 +71,19 @@ def diagnose(
     ] = None,
     seed: Seed = 0,
     jobs: Annotated[int, typer.Option(min=1, max=256, help="Processes to use.")] = 2,
+    settings: Annotated[
+        bool, typer.Option("--settings", help="Print the numbers of the method instead; needs no recordings.")
+    ] = False,
     json: Json = None,
 ) -> None:
     """Find out whether constants are wrong or an effect is missing: which one, how sure, and the run to record next."""
-    given = arguments.Given(recordings, arm, columns, effects)
+    if settings:
+        arguments.check(json, read=recordings or [])
+        from flexarm_env.cli.settings import show
+
+        show(json)
+        return
+    given = arguments.Given(arguments.required(recordings, "diagnose"), arm, columns, effects)
     model, runs = given.load(json, report, save, next_run)
     from flexarm_env.cli.answers import hand_out
     from flexarm_env.files import write_whole

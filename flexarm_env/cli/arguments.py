@@ -88,6 +88,19 @@ class Given:
         return {"command_line": shlex.join(words)}
 
 
+def required(recordings: Sequence[Path] | None, command: str) -> Sequence[Path]:
+    """Refuse a command without recordings, where only an option of it does without.
+
+    Raises:
+        InputError: if there are none.
+    """
+    if not recordings:
+        from flexarm_env.errors import InputError
+
+        raise InputError(f"missing argument 'RECORDING…' (see flexarm {command} --help)")
+    return recordings
+
+
 def load_arm(name: str, specs: Sequence[str] | None) -> Arm:
     """Load an arm that may have effects of the user's own."""
     from flexarm_env.arm import Arm

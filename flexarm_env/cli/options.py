@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
-Recordings = Annotated[
-    list[Path], typer.Argument(metavar="RECORDING…", help="CSV or .mat files, or folders of them.", show_default=False)
-]
+_RECORDINGS = typer.Argument(metavar="RECORDING…", help="CSV or .mat files, or folders of them.", show_default=False)
+Recordings = Annotated[list[Path], _RECORDINGS]
+RecordingsOrNone = Annotated[list[Path] | None, _RECORDINGS]
 _ARMS = "thesis, thesis-fem, cu-flexible, cu-rigid, emps"
 ArmName = Annotated[str, typer.Option("--arm", metavar="ARM", help=f"Arm file, or a shipped arm: {_ARMS}.")]
 Columns = Annotated[

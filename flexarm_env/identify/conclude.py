@@ -47,7 +47,9 @@ def conclude(
         ranking = _ranking(trace, [a.effect for a in accepted], values, nominal)
     scores = {"nominal": nominal_score, "refitted": base.score, **{a.effect: a.score for a in accepted}, "final": model.score}
     free = ("nominal", "refitted", "final")
-    corrected = with_origin(arm, final.arm, values, recordings, "diagnose", seed) if verdict != "nothing_missing" else arm
+    corrected = arm
+    if verdict != "nothing_missing":
+        corrected = with_origin(arm, final.arm, values, recordings, "diagnose", seed, calibrator.settings)
     return Diagnosis(
         verdict=verdict,
         effects=[a.effect for a in accepted],

@@ -68,11 +68,12 @@ def fit(
         values = estimates(final, nominal)
     say.at(1.0, "done")
     return Fit(
-        arm=with_origin(arm, final.arm, values, recordings, "fit", seed),
+        arm=with_origin(arm, final.arm, values, recordings, "fit", seed, settings),
         estimates=values,
         error={"nominal": before.windows, "refitted": after.windows},
         free_run={"nominal": before.free_run, "refitted": after.free_run},
         seconds=time.perf_counter() - began,
+        settings=settings,
     )
 
 
@@ -125,12 +126,13 @@ def add(
     adding.at(1.0, "done")
     names = ("nominal", "refitted", "final")
     return Addition(
-        arm=with_origin(arm, final.arm, values, recordings, f"add {effect}", seed),
+        arm=with_origin(arm, final.arm, values, recordings, f"add {effect}", seed, settings),
         effect=effect,
         estimates=values,
         error={name: s.windows for name, s in zip(names, scores, strict=True)},
         free_run={name: s.free_run for name, s in zip(names, scores, strict=True)},
         seconds=time.perf_counter() - began,
+        settings=settings,
     )
 
 

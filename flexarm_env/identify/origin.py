@@ -9,11 +9,18 @@ from typing import Any
 from flexarm_env import __version__
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.estimate import Estimate
+from flexarm_env.identify.settings import Settings
 from flexarm_env.recordings.recording import Recording
 
 
 def with_origin(
-    arm: Arm, fitted: Arm, values: Sequence[Estimate], recordings: Sequence[Recording], command: str, seed: int
+    arm: Arm,
+    fitted: Arm,
+    values: Sequence[Estimate],
+    recordings: Sequence[Recording],
+    command: str,
+    seed: int,
+    settings: Settings,
 ) -> Arm:
     """Give `arm` the values and effects of `fitted`, their intervals, and their origin.
 
@@ -24,12 +31,14 @@ def with_origin(
         recordings: to which they were fitted.
         command: that made the fit.
         seed: recorded with the result.
+        settings: numbers of the method; the arm keeps their digest.
     """
     table: dict[str, dict[str, Any]] = {e.path: e.as_json() for e in values}
     origin = {
         "command": command,
         "version": __version__,
         "seed": seed,
+        "settings": settings.digest(),
         "recordings": [{"name": r.name, "sha256": r.sha256} for r in recordings],
     }
     sensors = {**arm.sensors, **fitted.sensors}

@@ -28,6 +28,7 @@ class Fit:
         error: "nominal", "refitted": rms over noise on what was held out, in windows of 1 s.
         free_run: the same, replayed once from the start.
         seconds: time taken.
+        settings: numbers of the method.
     """
 
     arm: Arm
@@ -35,6 +36,7 @@ class Fit:
     error: dict[str, float]
     free_run: dict[str, float]
     seconds: float
+    settings: Settings = SETTINGS
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,7 @@ class Addition:
         error: "nominal", "refitted" (constants only), "final" (with the effect): rms over noise, held out, windows of 1 s.
         free_run: the same, replayed once from the start.
         seconds: time taken.
+        settings: numbers of the method.
     """
 
     arm: Arm
@@ -56,6 +59,7 @@ class Addition:
     error: dict[str, float]
     free_run: dict[str, float]
     seconds: float
+    settings: Settings = SETTINGS
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,16 @@
 One frozen dataclass per stage; `Settings` holds them all. Results carry the settings under which they were made, and
 `flexarm diagnose --settings` prints them. Errors are rms over the noise, so that 1 is perfect; an excess is a variance over that
 of the noise, less 1.
+
+In the origins of values, seeds and cases such as `null-38` are those of the benchmark of hidden effects, and EMPS, `thesis` and
+`cu-flexible` are shipped arms. "No sweep recorded" means that the value was tried on what is named, and no other is on record.
 """
 
 from __future__ import annotations
 
 import dataclasses
+import hashlib
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
@@ -60,15 +65,51 @@ class Number:
 class ErrorScale:
     """Rungs of one ladder: the error of a model over the noise."""
 
-    converged: float = tuned(1.002, "A calibration that ends below this is not continued.")
-    at_noise: float = tuned(1.01, "Rivals of an accepted effect are tried where the error is above this.")
-    calibrated: float = tuned(1.02, "A calibration that ends below this is not restarted from the nominal constants.")
-    near: float = tuned(1.03, "Above this a calibration that ends close to the noise is continued twice.")
-    nothing_left: float = tuned(1.1, "A held-out error below this leaves nothing to explain.")
-    explained: float = tuned(1.2, "A held-out error in windows below this is explained, whatever share was removed.")
-    close: float = tuned(1.4, "A model below this is close to the noise: rivals are ordered by BIC, and calibrations refined.")
-    free_run_explained: float = tuned(1.5, "A held-out error of the free run below this is explained.")
-    far_off: float = tuned(3.0, "A model above this is far off: something is missing.")
+    converged: float = tuned(
+        1.002,
+        "A calibration that ends below this is not continued.",
+        "26 null machines of seeds 2 and 3 then ended at 0.994 to 1.005 times the noise, before at 1.004 to 1.05",
+    )
+    at_noise: float = tuned(
+        1.01,
+        "Rivals of an accepted effect are tried where the error is above this.",
+        "with the exchange of confused effects, for misses of seed 4; no sweep recorded",
+    )
+    calibrated: float = tuned(
+        1.02,
+        "A calibration that ends below this is not restarted from the nominal constants.",
+        "lowered from 1.1 for position_friction-3, stribeck-payload and asymmetric_viscous-backlash of seed 5, then within 1.05",
+    )
+    near: float = tuned(
+        1.03,
+        "Above this a calibration that ends close to the noise is continued twice.",
+        "with the second continuation, for play between gears, whose error is rough; no sweep recorded",
+    )
+    nothing_left: float = tuned(
+        1.1,
+        "A held-out error below this leaves nothing to explain.",
+        "raised from 1.08 before the benchmark existed, reason not known; it leaves some effects of strength 1 unfound",
+    )
+    explained: float = tuned(
+        1.2,
+        "A held-out error in windows below this is explained, whatever share was removed.",
+        "seed 5: right answers ended at 1.165 or below, effects outside the catalogue that were mislabelled at 1.3 to 2.5",
+    )
+    close: float = tuned(
+        1.4,
+        "A model below this is close to the noise: rivals are ordered by BIC, and calibrations refined.",
+        "seven pairs of seeds 1 to 3, all right with it: windows alone took a constant torque for a tilted base",
+    )
+    free_run_explained: float = tuned(
+        1.5,
+        "A held-out error of the free run below this is explained.",
+        "a weak saturation of seeds 1 to 3, lost without it, ended at 1.46",
+    )
+    far_off: float = tuned(
+        3.0,
+        "A model above this is far off: something is missing.",
+        "first value not known; kept, since the models of CU Boulder's real arms end above it",
+    )
 
 
 @dataclass(frozen=True)
@@ -90,11 +131,19 @@ class Preparation:
     settling: float = tuned(
         0.05,
         "Where torque noise is stated, calibrations ignore errors before this time: they show an uncertain start.",
-        "the published recipe for EMPS drops its first 49 ms (Janot, Gautier and Brunot 2019)",
+        "EMPS: the unknown start moved a Coulomb friction by 2 %; the published recipe drops 49 ms (Janot, Gautier, Brunot 2019)",
         "s",
     )
-    late_least_shown: float = tuned(0.05, "Less is held out where the fitted part shows less than this share of the excess.")
-    late_least_held_out: float = tuned(0.1, "Share of a recording's time and samples that stays held out.")
+    late_least_shown: float = tuned(
+        0.05,
+        "Less is held out where the fitted part shows less than this share of the excess.",
+        "limits that act once, late, after misses of saturation in seed 5; no sweep recorded",
+    )
+    late_least_held_out: float = tuned(
+        0.1,
+        "Share of a recording's time and samples that stays held out.",
+        "limits that act once, late, after misses of saturation in seed 5; no sweep recorded",
+    )
 
 
 @dataclass(frozen=True)
@@ -114,24 +163,78 @@ class ReferenceSizes:
 class InitialStates:
     """How the state at the start of a recording is estimated."""
 
-    still: float = tuned(10.0, "A hub within this multiple of the noise of its first angle is still.")
-    held_time: float = tuned(0.1, "A hub that is still for this long counts as held.", unit="s")
-    vibrates: float = tuned(2.0, "A beam signal of a held hub that scatters by this multiple of its noise vibrates.")
-    significant: float = tuned(6.0, "Multiple of the standard deviation at which a start differs from rest.")
+    still: float = tuned(
+        10.0,
+        "A hub within this multiple of the noise of its first angle is still.",
+        "with the fit of the start: simulated runs cut while driven, moving and vibrating, and cu-flexible; no sweep recorded",
+    )
+    held_time: float = tuned(
+        0.1,
+        "A hub that is still for this long counts as held.",
+        "with the fit of the start: simulated runs cut while driven, moving and vibrating, and cu-flexible; no sweep recorded",
+        "s",
+    )
+    vibrates: float = tuned(
+        2.0,
+        "A beam signal of a held hub that scatters by this multiple of its noise vibrates.",
+        "with the fit of the start: simulated runs cut while driven, moving and vibrating, and cu-flexible; no sweep recorded",
+    )
+    significant: float = tuned(
+        6.0,
+        "Multiple of the standard deviation at which a start differs from rest.",
+        "taken from an earlier test for a deflected beam; how it was found there is not known",
+    )
     at_rest: float = tuned(3.0, "A first speed within this multiple of the noise is one of rest.")
     at_zero: float = tuned(4.0, "A first angle within this multiple of the noise is zero.")
-    first_samples: int = tuned(20, "Samples of the parabola from which a moving hub's speed is estimated.", unit="samples")
+    first_samples: int = tuned(
+        20,
+        "Samples of the parabola from which a moving hub's speed is estimated.",
+        "with the fit of the start: simulated runs cut while driven, moving and vibrating, and cu-flexible; no sweep recorded",
+        "samples",
+    )
     first_time: float = tuned(0.004, "Stretch whose mean shows a deflected beam.", unit="s")
-    longest_held: float = tuned(0.5, "Longest stretch that the state of a held hub is fitted to.", unit="s")
-    longest_moving: float = tuned(0.15, "Longest stretch that the state of a moving hub is fitted to.", unit="s")
-    fewest: int = tuned(3, "Shortest stretch.", unit="samples")
-    iterations: int = tuned(3, "Gauss–Newton steps.")
-    difference: float = tuned(1e-4, "Step of the differences, in unit-energy coordinates.")
+    longest_held: float = tuned(
+        0.5,
+        "Longest stretch that the state of a held hub is fitted to.",
+        "with the fit of the start: simulated runs cut while driven, moving and vibrating, and cu-flexible; no sweep recorded",
+        "s",
+    )
+    longest_moving: float = tuned(
+        0.15,
+        "Longest stretch that the state of a moving hub is fitted to.",
+        "with the fit of the start: simulated runs cut while driven, moving and vibrating, and cu-flexible; no sweep recorded",
+        "s",
+    )
+    fewest: int = tuned(
+        3, "Shortest stretch.", "Appendix A's printed tables, sampled slowly, need samples for the start", "samples"
+    )
+    iterations: int = tuned(
+        3,
+        "Gauss–Newton steps.",
+        "with the fit of the start: simulated runs cut while driven, moving and vibrating, and cu-flexible; no sweep recorded",
+    )
+    difference: float = tuned(
+        1e-4,
+        "Step of the differences, in unit-energy coordinates.",
+        "with the fit of the start: simulated runs cut while driven, moving and vibrating, and cu-flexible; no sweep recorded",
+    )
     gain: float = tuned(0.999, "A step that leaves more than this share of the cost ends the iterations.")
-    modes: int = tuned(4, "Modes of the beam that may vibrate.")
-    faster_modes: float = tuned(0.3, "Expected size of the faster modes over that of the first.")
+    modes: int = tuned(
+        4,
+        "Modes of the beam that may vibrate.",
+        "with the fit of the start: simulated runs cut while driven, moving and vibrating, and cu-flexible; no sweep recorded",
+    )
+    faster_modes: float = tuned(
+        0.3,
+        "Expected size of the faster modes over that of the first.",
+        "with the fit of the start: simulated runs cut while driven, moving and vibrating, and cu-flexible; no sweep recorded",
+    )
     least_size: float = tuned(1e-12, "Smallest expected size of a mode.", "guards a division")
-    least_seen: float = tuned(1e-4, "Directions that the stretch shows less than this, over the best shown one, stay at rest.")
+    least_seen: float = tuned(
+        1e-4,
+        "Directions that the stretch shows less than this, over the best shown one, stay at rest.",
+        "with the fit of the start: simulated runs cut while driven, moving and vibrating, and cu-flexible; no sweep recorded",
+    )
 
 
 @dataclass(frozen=True)
@@ -139,19 +242,46 @@ class ProcessNoise:
     """Standard deviations of the torque noise that observers assume, over the rms torque of the drive."""
 
     calibration: tuple[float, ...] = tuned((0.03, 0.003, 0.0003), "Levels that a calibration goes through before its own.")
-    calibration_more: tuple[float, ...] = tuned((0.3, 0.03, 0.003, 0.0003), "Levels of one for which those are too few.")
-    calibration_last: tuple[float, ...] = tuned((0.0003,), "Levels of one that continues near the noise.")
-    brief: tuple[float, ...] = tuned((0.003,), "Level of a brief calibration.")
-    refinement: tuple[float, ...] = tuned((3e-3, 3e-4, 3e-5), "Levels of the final Gauss–Newton steps.")
-    refinement_aside: tuple[float, ...] = tuned((3e-3, 3e-5), "Levels of those that begin to either side.")
+    calibration_more: tuple[float, ...] = tuned(
+        (0.3, 0.03, 0.003, 0.0003),
+        "Levels of one for which those are too few.",
+        "a small arm driven by voltage ended at 2.6 times the noise; with it at the noise",
+    )
+    calibration_last: tuple[float, ...] = tuned(
+        (0.0003,),
+        "Levels of one that continues near the noise.",
+        "the last level of `calibration`, for play between gears, whose error is rough",
+    )
+    brief: tuple[float, ...] = tuned(
+        (0.003,), "Level of a brief calibration.", "the middle level of `calibration`; one level saves time"
+    )
+    refinement: tuple[float, ...] = tuned(
+        (3e-3, 3e-4, 3e-5),
+        "Levels of the final Gauss–Newton steps.",
+        "motor inertias of null-38, null-45 and null-58 were 10, 11 and 15 % off, then 3, 0 and 10 %; no sweep recorded",
+    )
+    refinement_aside: tuple[float, ...] = tuned(
+        (3e-3, 3e-5),
+        "Levels of those that begin to either side.",
+        "26 null machines of seeds 2 and 3 then ended at 0.994 to 1.005 times the noise, before at 1.004 to 1.05",
+    )
     screening: tuple[float, ...] = tuned(
         (0.01, 0.003, 0.001, 0.0003),
         "Candidates are screened at the first level at which errors exceed `screening.visible`: more feedback hides a small "
         "steady torque, less makes the errors of a model that is far off rough.",
+        "at 0.01 alone small steady torques hid; the lower levels were added for them, no sweep recorded",
     )
-    windows: tuple[float, ...] = tuned((1e-4, 2e-3, 2e-2), "Levels of the replays from whose states windows start.")
-    windows_brief: tuple[float, ...] = tuned((2e-3, 2e-2), "Those of a brief error.")
-    detection: float = tuned(0.01, "Level of the innovations from which detectable sizes are estimated.")
+    windows: tuple[float, ...] = tuned(
+        (1e-4, 2e-3, 2e-2),
+        "Levels of the replays from whose states windows start.",
+        "a single 2e-3 at first; why these three is not known",
+    )
+    windows_brief: tuple[float, ...] = tuned(
+        (2e-3, 2e-2), "Those of a brief error.", "two levels of `windows`, which save two replays of four"
+    )
+    detection: float = tuned(
+        0.01, "Level of the innovations from which detectable sizes are estimated.", "the first level of `screening`"
+    )
 
 
 @dataclass(frozen=True)
@@ -163,8 +293,16 @@ class Observers:
         14, "Steps of the doubling iteration for the Riccati equation.", "2**14 samples reach the steady state"
     )
     unstable: float = tuned(1.0001, "A gain whose closed loop grows by more than this per sample is dropped.")
-    held_drift: float = tuned(0.05, "Drift of a held angle per sample, over the noise of its sensor, at full torque noise.")
-    size_steps: float = tuned(64.0, "Factor between the torque sizes that the drift of a held angle distinguishes.")
+    held_drift: float = tuned(
+        0.05,
+        "Drift of a held angle per sample, over the noise of its sensor, at full torque noise.",
+        "0.07 and 0.075 were tried: a backlash, a real arm of CU Boulder or a table of Appendix A failed",
+    )
+    size_steps: float = tuned(
+        64.0,
+        "Factor between the torque sizes that the drift of a held angle distinguishes.",
+        "chosen so that calibrations of the arm `thesis` and of the real recordings end where they did",
+    )
     least_process: float = tuned(1e-12, "Process variance of states beyond positions and speeds.", "keeps the covariance regular")
 
 
@@ -177,7 +315,11 @@ class Parameters:
     )
     positive: float = tuned(3.0, "Prior of the logarithm of a value without a null, such as a time.")
     least_step_constant: float = tuned(1e-3, "Narrowest difference of a constant's logarithm.")
-    least_step_effect: float = tuned(1e-2, "Narrowest difference of an effect's value, over its size.")
+    least_step_effect: float = tuned(
+        1e-2,
+        "Narrowest difference of an effect's value, over its size.",
+        "stick-slip makes smaller differences of an effect look like noise; no sweep recorded",
+    )
     least_size: float = tuned(0.3, "Size of an effect below which differences shrink no further, in typical sizes.")
     widest_step: float = tuned(0.3, "Widest difference, over a constant's prior or an effect's size.")
 
@@ -190,13 +332,33 @@ class LeastSquares:
     less_damping: float = tuned(0.2, "Factor of the damping after a step that helps.")
     least_damping: float = tuned(1e-7, "Smallest damping.")
     more_damping: float = tuned(10.0, "Factor of the damping after a step that fails.", "customary (Marquardt 1963)")
-    least_helpful: float = tuned(1e-3, "Damping below which a step is that of Gauss and Newton.")
+    least_helpful: float = tuned(
+        1e-3,
+        "Damping below which a step is that of Gauss and Newton.",
+        "with Broyden's correction: one diagnosis of three runs took 46 s of one core, before 71; no sweep recorded",
+    )
     largest_step: float = tuned(3.0, "Largest change of a scaled value in a step.")
-    steps: int = tuned(4, "Steps along one Jacobian, which each corrects for the next.")
-    worthwhile: float = tuned(0.01, "Relative decrease of the cost below which a Jacobian is computed anew.")
-    trials: int = tuned(5, "Dampings that the first step along a Jacobian tries.")
+    steps: int = tuned(
+        4,
+        "Steps along one Jacobian, which each corrects for the next.",
+        "with Broyden's correction: one diagnosis of three runs took 46 s of one core, before 71; no sweep recorded",
+    )
+    worthwhile: float = tuned(
+        0.01,
+        "Relative decrease of the cost below which a Jacobian is computed anew.",
+        "with Broyden's correction: one diagnosis of three runs took 46 s of one core, before 71; no sweep recorded",
+    )
+    trials: int = tuned(
+        5,
+        "Dampings that the first step along a Jacobian tries.",
+        "with Broyden's correction: one diagnosis of three runs took 46 s of one core, before 71; no sweep recorded",
+    )
     shrinks: float = tuned(0.7, "Differences that shrank by less than this factor give the same Jacobian again.")
-    narrow: float = tuned(8.0, "Factor by which differences are narrower in the last pass.")
+    narrow: float = tuned(
+        8.0,
+        "Factor by which differences are narrower in the last pass.",
+        "EMPS: over wider differences, curvature bent its friction by 1.2 %",
+    )
     largest_residual: float = tuned(1e4, "Largest residual, in standard deviations: one bad moment must not rule a fit.")
 
 
@@ -206,27 +368,76 @@ class Calibrating:
 
     iterations: int = tuned(6, "Jacobians at each level of process noise.")
     passes: int = tuned(
-        3, "Passes at the arm's own torque noise: the first weighs by errors that it then removes, the last is narrow."
+        3,
+        "Passes at the arm's own torque noise: the first weighs by errors that it then removes, the last is narrow.",
+        "two until the narrow one was added for EMPS, whose friction wide differences bent by 1.2 %",
     )
-    tolerance: float = tuned(1e-2, "Relative decrease of the cost at which a level is left.")
-    final_tolerance: float = tuned(1e-4, "Relative decrease of the cost at which the last pass ends.")
-    last_iterations: int = tuned(2, "Jacobians when only the held-out part is new.")
+    tolerance: float = tuned(
+        1e-2,
+        "Relative decrease of the cost at which a level is left.",
+        "with Broyden's correction: one diagnosis of three runs took 46 s of one core, before 71; no sweep recorded",
+    )
+    final_tolerance: float = tuned(
+        1e-4,
+        "Relative decrease of the cost at which the last pass ends.",
+        "with Broyden's correction: one diagnosis of three runs took 46 s of one core, before 71; no sweep recorded",
+    )
+    last_iterations: int = tuned(
+        2, "Jacobians when only the held-out part is new.", "a diagnosis did less twice; no sweep recorded"
+    )
     brief_iterations: int = tuned(2, "Jacobians of a brief calibration.")
-    continuations: int = tuned(4, "How often a calibration that stays far off is continued.")
-    memory: float = tuned(0.02, "Time over which the errors of a model that is far off are correlated.", unit="s")
+    continuations: int = tuned(
+        4,
+        "How often a calibration that stays far off is continued.",
+        "one run of CU Boulder's arm ended 6 % off, by rounding; no sweep recorded",
+    )
+    memory: float = tuned(
+        0.02,
+        "Time over which the errors of a model that is far off are correlated.",
+        "cu-flexible: searches strayed to a hub fifty times too heavy; no sweep recorded",
+        "s",
+    )
 
 
 @dataclass(frozen=True)
 class Refining:
     """Final Gauss–Newton steps along weakly observable directions, and the common scale of forces."""
 
-    difference: float = tuned(1e-5, "Step of the differences.")
-    iterations: int = tuned(5, "Gauss–Newton steps at each level.")
-    tolerance: float = tuned(1e-4, "Relative decrease of the cost at which a level is left.")
-    dampings: tuple[float, ...] = tuned((0.0, 1e1, 1e2, 1e3, 1e4), "Dampings tried in turn, over the priors' weight.")
-    aside: float = tuned(0.3, "Distance to either side at which other minima are sought, in priors' standard deviations.")
-    scale_step: float = tuned(0.02, "Step of the logarithm of the common scale.")
-    scale_furthest: float = tuned(0.5, "Furthest that the logarithm of the common scale moves at once.")
+    difference: float = tuned(
+        1e-5,
+        "Step of the differences.",
+        "motor inertias of null-38, null-45 and null-58 were 10, 11 and 15 % off, then 3, 0 and 10 %; no sweep recorded",
+    )
+    iterations: int = tuned(
+        5,
+        "Gauss–Newton steps at each level.",
+        "motor inertias of null-38, null-45 and null-58 were 10, 11 and 15 % off, then 3, 0 and 10 %; no sweep recorded",
+    )
+    tolerance: float = tuned(
+        1e-4,
+        "Relative decrease of the cost at which a level is left.",
+        "motor inertias of null-38, null-45 and null-58 were 10, 11 and 15 % off, then 3, 0 and 10 %; no sweep recorded",
+    )
+    dampings: tuple[float, ...] = tuned(
+        (0.0, 1e1, 1e2, 1e3, 1e4),
+        "Dampings tried in turn, over the priors' weight.",
+        "motor inertias of null-38, null-45 and null-58 were 10, 11 and 15 % off, then 3, 0 and 10 %; no sweep recorded",
+    )
+    aside: float = tuned(
+        0.3,
+        "Distance to either side at which other minima are sought, in priors' standard deviations.",
+        "26 null machines of seeds 2 and 3 then ended at 0.994 to 1.005 times the noise, before at 1.004 to 1.05",
+    )
+    scale_step: float = tuned(
+        0.02,
+        "Step of the logarithm of the common scale.",
+        "torque constants of null-21, null-38 and null-45 of seed 4 were 10, 5 and 11 % off, then 3, 1 and 3 %",
+    )
+    scale_furthest: float = tuned(
+        0.5,
+        "Furthest that the logarithm of the common scale moves at once.",
+        "torque constants of null-21, null-38 and null-45 of seed 4 were 10, 5 and 11 % off, then 3, 1 and 3 %",
+    )
 
 
 @dataclass(frozen=True)
@@ -242,15 +453,29 @@ class Intervals:
 class Screening:
     """Ranking of candidates by the change of the residual that they would make."""
 
-    visible: float = tuned(1.5, "Error over noise at which a level of process noise leaves something to explain.")
+    visible: float = tuned(
+        1.5,
+        "Error over noise at which a level of process noise leaves something to explain.",
+        "with the levels of `process_noise.screening`, so that small steady torques show; no sweep recorded",
+    )
     least_explained: float = tuned(0.005, "Least share of the residual that a signature must explain to be fitted.")
     least_change: float = tuned(1e-12, "A change of the residual below this share is none.", "guards a division")
     starts_scanned: int = tuned(2, "Starts whose size is scanned.")
     sizes: tuple[float, ...] = tuned((0.15, 0.4, 0.75, 1.2, 2.5), "Factors of the size that are scanned.")
-    few_starts: int = tuned(2, "Effects with no more starts are tried at small sizes, too.")
-    small: tuple[float, ...] = tuned((0.03, 0.003), "Shares of the first start's size that are tried where starts are few.")
+    few_starts: int = tuned(
+        2,
+        "Effects with no more starts are tried at small sizes, too.",
+        "so that effects a hundred times smaller than typical are found; no sweep recorded",
+    )
+    small: tuple[float, ...] = tuned(
+        (0.03, 0.003),
+        "Shares of the first start's size that are tried where starts are few.",
+        "so that effects a hundred times smaller than typical are found; no sweep recorded",
+    )
     linear: float = tuned(0.7, "Share of a secant's promise that counts as proportional growth.")
-    largest_factor: float = tuned(10.0, "Largest factor taken from a secant.")
+    largest_factor: float = tuned(
+        10.0, "Largest factor taken from a secant.", "raised from 4 while the benchmark was built; no sweep recorded"
+    )
     iterations: int = tuned(4, "Jacobians of a candidate's own parameters.")
     tolerance: float = tuned(1e-3, "Relative decrease of the cost at which a candidate's fit ends.")
 
@@ -262,14 +487,28 @@ class Proposing:
     finalists: int = tuned(4, "Candidates calibrated in full in each round.")
     least_change: float = tuned(0.97, "They must lower the cost of the screening to this share.")
     least_of_best: float = tuned(0.3, "And by this share of what the best one does.")
-    near_best: float = tuned(0.6, "Those that do this share of what the best one does go first.")
+    near_best: float = tuned(
+        0.6, "Those that do this share of what the best one does go first.", "a diagnosis did less twice; no sweep recorded"
+    )
     refit_helps: float = tuned(0.2, "Constants that leave less than this share of the excess are trusted as a start.")
     refit_fails: float = tuned(0.7, "Constants that leave more than this share of the excess are not.")
     biased: float = tuned(1.0, "Constants that moved by more priors' standard deviations are reset before brief calibrations.")
-    briefly_better: float = tuned(0.9, "Share of the control's excess that an effect may leave after a brief calibration.")
+    briefly_better: float = tuned(
+        0.9,
+        "Share of the control's excess that an effect may leave after a brief calibration.",
+        "a diagnosis that found nothing took two minutes less; no sweep recorded",
+    )
     most_brief: int = tuned(4, "Effects calibrated in full after brief calibrations.")
-    too_large: float = tuned(1.03, "A brief calibration that leaves this multiple of the control's error began too large.")
-    least_offset: float = tuned(0.01, "Share of the residual that the companion effect must explain to be fitted along.")
+    too_large: float = tuned(
+        1.03,
+        "A brief calibration that leaves this multiple of the control's error began too large.",
+        "small gaps behind constants that are far off, misses of seed 4; no sweep recorded",
+    )
+    least_offset: float = tuned(
+        0.01,
+        "Share of the residual that the companion effect must explain to be fitted along.",
+        "calibrations with a constant torque beside every finalist took half of a round; no sweep recorded",
+    )
 
 
 @dataclass(frozen=True)
@@ -277,12 +516,32 @@ class Selecting:
     """Thresholds by which effects are accepted, exchanged and dropped (`ThresholdCriteria`)."""
 
     most_effects: int = tuned(3, "Effects that a diagnosis names at most.")
-    least_gain: float = tuned(0.25, "Least share of the excess that an effect must remove.")
-    least_gain_far_off: float = tuned(0.5, "The same where the model stays far off, in windows and in the free run.")
-    least_total_gain: float = tuned(0.7, "Least share of the excess that all accepted effects must remove.")
-    least_total_gain_near: float = tuned(0.95, "The same in windows where the model ends near the noise.")
+    least_gain: float = tuned(
+        0.25,
+        "Least share of the excess that an effect must remove.",
+        "raised from 0.15 before the benchmark existed; why is not known",
+    )
+    least_gain_far_off: float = tuned(
+        0.5,
+        "The same where the model stays far off, in windows and in the free run.",
+        "cu-flexible: an effect that leaves a model far off must halve both errors; no sweep recorded",
+    )
+    least_total_gain: float = tuned(
+        0.7,
+        "Least share of the excess that all accepted effects must remove.",
+        "raised from 0.5: brushes' drop was named for a sticky spot, seeds 1 to 3",
+    )
+    least_total_gain_near: float = tuned(
+        0.95,
+        "The same in windows where the model ends near the noise.",
+        "seed 5: effects outside the catalogue that were mislabelled left 29, 9 and 4 % of the excess",
+    )
     least_removed: float = tuned(0.2, "Excess that an effect must remove at least.")
-    least_of_first: float = tuned(1e-3, "The same, as a share of what the refitted constants leave.")
+    least_of_first: float = tuned(
+        1e-3,
+        "The same, as a share of what the refitted constants leave.",
+        "2e-3 was tried with fewer continuations of a calibration, and taken back with them",
+    )
     same_gain: float = tuned(
         0.03, "Effects are equivalent if what they leave differs by less than this share of what they remove."
     )
@@ -294,17 +553,39 @@ class Selecting:
 class DetectionLimits:
     """The size up to which an absent effect would go undetected."""
 
-    step_down: float = tuned(100.0, "Largest factor by which a size is lowered at once.")
-    step_up: float = tuned(3.0, "Largest factor by which a size is raised at once.")
-    steps: int = tuned(4, "Steps by the innovations.")
+    step_down: float = tuned(100.0, "Largest factor by which a size is lowered at once.", "raised from 30; why is not known")
+    step_up: float = tuned(
+        3.0,
+        "Largest factor by which a size is raised at once.",
+        "simulated effects: a third of the limit stays hidden, three times as much shows; no sweep recorded",
+    )
+    steps: int = tuned(
+        4,
+        "Steps by the innovations.",
+        "simulated effects: a third of the limit stays hidden, three times as much shows; no sweep recorded",
+    )
     window_steps: int = tuned(2, "Steps by windows where only they show the effect.")
     in_windows: float = tuned(
-        25.0, "Rise of the error in windows over that of the innovations, in which feedback hides an effect."
+        25.0,
+        "Rise of the error in windows over that of the innovations, in which feedback hides an effect.",
+        "simulated effects: a third of the limit stays hidden, three times as much shows; no sweep recorded",
     )
-    stays: float = tuned(0.7, "A smaller size that leaves more than this share of a change hardly lowers it.")
+    stays: float = tuned(
+        0.7,
+        "A smaller size that leaves more than this share of a change hardly lowers it.",
+        "simulated effects: a third of the limit stays hidden, three times as much shows; no sweep recorded",
+    )
     least_change: float = tuned(1e-12, "A change that counts as none.", "guards a division")
-    close: float = tuned(0.2, "Change of the size's logarithm that ends the steps.")
-    most_starts: int = tuned(3, "Starts that are tried: of a periodic effect, from its slowest to its fastest.")
+    close: float = tuned(
+        0.2,
+        "Change of the size's logarithm that ends the steps.",
+        "simulated effects: a third of the limit stays hidden, three times as much shows; no sweep recorded",
+    )
+    most_starts: int = tuned(
+        3,
+        "Starts that are tried: of a periodic effect, from its slowest to its fastest.",
+        "lowered from 4, in the change that halved the time of the demo's diagnosis",
+    )
 
 
 @dataclass(frozen=True)
@@ -325,7 +606,7 @@ class Explaining:
     fewest_in_bin: int = tuned(12, "Samples in a bin.", unit="samples")
     line_points: int = tuned(200, "Points of a law's line.")
     most_points: int = tuned(1500, "Samples drawn.")
-    quartiles: tuple[float, float] = tuned((25.0, 75.0), "Band that holds the middle half of a bin.", unit="%")
+    quartiles: tuple[float, float] = tuned((25.0, 75.0), "Band that holds the middle half of a bin.", "a definition", "%")
 
 
 @dataclass(frozen=True)
@@ -370,6 +651,16 @@ class Settings:
     def as_json(self) -> dict[str, dict[str, Any]]:
         """Convert to plain data: the value of each number by stage and name."""
         return {stage: dict(values) for stage, values in dataclasses.asdict(self).items()}
+
+    def digest(self) -> str:
+        """Compute the first 12 hexadecimal digits of the SHA-256 of the numbers as JSON, by which results name their settings.
+
+        Example:
+            >>> Settings().digest() == SETTINGS.digest()
+            True
+        """
+        numbers = json.dumps(self.as_json(), sort_keys=True)
+        return hashlib.sha256(numbers.encode()).hexdigest()[:12]
 
 
 #: The settings of every published result.

@@ -211,4 +211,12 @@ def _redo(found: Findings) -> str:
     facts += [f"seed {made['seed']}" if made.get("seed") is not None else ""]
     command = f"<pre tabindex=0>{escape(str(made['command_line']))}</pre>" if made.get("command_line") else ""
     text = paragraph(", ".join(fact for fact in facts if fact))
-    return section("How to reproduce it", command, text, table(["recording", "SHA-256 of its file"], files, words=2, code=(1,)))
+    sums = table(["recording", "SHA-256 of its file"], files, words=2, code=(1,))
+    return section("How to reproduce it", command, text, _settings(found.diagnosis), sums)
+
+
+def _settings(diagnosis: Diagnosis | None) -> str:
+    """Name the settings of a diagnosis by their digest."""
+    if diagnosis is None:
+        return ""
+    return paragraph(f"Settings {diagnosis.settings.digest()}; flexarm diagnose --settings prints the current ones.")

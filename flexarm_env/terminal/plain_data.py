@@ -23,17 +23,18 @@ def of_comparison(result: Comparison) -> dict[str, Any]:
 
 
 def of_fit(result: Fit) -> dict[str, Any]:
-    """Give the errors and constants of a fit."""
+    """Give the errors and constants of a fit, and its settings."""
     return {
         "error": result.error,
         "free_run": result.free_run,
         "constants": {words.constant_name(e): e.as_json() for e in result.estimates},
+        "settings": result.settings.as_json(),
         "seconds": round(result.seconds, 1),
     }
 
 
 def of_addition(result: Addition) -> dict[str, Any]:
-    """Give the errors, parameters and constants of an added effect."""
+    """Give the errors, parameters and constants of an added effect, and the settings."""
     prefix = f"effects.{result.effect}."
     own = [e for e in result.estimates if e.path.startswith(prefix)]
     others = [e for e in result.estimates if not e.path.startswith(prefix)]
@@ -43,5 +44,6 @@ def of_addition(result: Addition) -> dict[str, Any]:
         "error": result.error,
         "free_run": result.free_run,
         "constants": {words.constant_name(e): e.as_json() for e in others},
+        "settings": result.settings.as_json(),
         "seconds": round(result.seconds, 1),
     }

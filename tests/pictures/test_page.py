@@ -157,6 +157,13 @@ def test_it_says_how_to_redo_it():
     words = visible(page(Findings(result, runs, provenance=REDO)))
     for part in ("flexarm diagnose runs --seed 7", "FlexArm 0.1.0", "abcdef", "seed 7", "c0ffee"):
         assert part in words
+    assert "Settings" not in words
+
+
+def test_it_names_the_settings_of_a_diagnosis():
+    result, found = comparison(100, 0), diagnosis()
+    words = visible(page(Findings(result, recordings(result), comparison(100, 3), found, provenance=REDO)))
+    assert f"Settings {found.settings.digest()}; flexarm diagnose --settings prints" in words
 
 
 def test_names_are_no_markup():
