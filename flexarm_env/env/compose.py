@@ -57,7 +57,7 @@ def _source(terms: tuple[RewardTerm, ...]) -> str:
 
 
 def _write_terms(terms: tuple[RewardTerm, ...]) -> str:
-    """Write the function that reward.write_terms stands for."""
+    """Write the function in the place of placeholder.write_terms: the weighted sum of these terms."""
     lines = [DECORATOR, "def write_terms(a, weights, row, row_each, sample):", "    reward = 0.0"]
     for i, term in enumerate(terms):
         given = ", ".join(f"sample.{quantity}" for quantity in term.quantities)

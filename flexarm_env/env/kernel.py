@@ -35,7 +35,7 @@ from flexarm_env.env.layout import (
     row_of,
     truth_of,
 )
-from flexarm_env.env.reward import write_terms
+from flexarm_env.env.placeholder import write_terms
 from flexarm_env.env.sensing import tap_command, write_observation
 from flexarm_env.tasks.reward import Sample
 
@@ -115,5 +115,6 @@ def write_reward(a, places, arm):
         time=a[sample] * a[settings + INTERVAL],
         failed=failed,
     )
+    # write_terms of the task's own terms, which compose writes in the place of the imported one
     a[row + REWARD * row_each] = write_terms(a, settings + WEIGHTS, row + TERMS * row_each, row_each, moment)
     a[row + TERMINATED * row_each] = 1.0 if failed else 0.0
