@@ -13,6 +13,7 @@ from flexarm_env.env.setup import Setup
 from flexarm_env.env.shares import LINE
 from flexarm_env.plant import batch as plant_at
 from flexarm_env.plant.plant import Plant
+from flexarm_env.plant.truth import TRUTH_SIZE
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -58,7 +59,7 @@ def arena_of(setup: Setup, plant: Plant, sensors: Floats, count: int, threads: i
             "sensors": sensors.shape,
             "outcome": (at.TERMS + terms, count + LINE - count % LINE),  # multiples of 512 would evict each other from the cache
             "own": (count, at.COLUMNS),
-            "exact": (count, signals + plant_at.TRUTH),
+            "exact": (count, signals + TRUTH_SIZE),
             "requested": (count,),
             "applied": (count,),
             "pushes": (count,),

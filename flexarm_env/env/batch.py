@@ -17,8 +17,8 @@ from flexarm_env.env.shares import Arms
 from flexarm_env.env.threads import Crew
 from flexarm_env.env.variation import hash_of
 from flexarm_env.errors import InputError
-from flexarm_env.plant.batch import TRUTH
 from flexarm_env.plant.plant import Plant
+from flexarm_env.plant.truth import TRUTH_ANGLE, TRUTH_SIZE
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -38,7 +38,7 @@ class Batch:
         info_rows: rows of the outcome that an info reports, by name.
         info_of: makes the info of one arm from its column of the outcome, as a list.
         requested: commands of the next step (arms,) [A or V].
-        exact_readings: readings without noise, delay and steps, then the plant's truth (arms, signals + TRUTH), SI units.
+        exact_readings: readings without noise, delay and steps, then the plant's truth (arms, signals + TRUTH_SIZE), SI units.
         sensor_output: last readings (arms, signals), SI units.
         own: numbers of each arm (arms, COLUMNS), see layout.
         states: of the plant (arms, numbers).
@@ -110,12 +110,12 @@ class Batch:
         self.states[arm] = self.first_state
         self.waiting[:, arm] = 0.0
         plant.kernel.look_batch(self.arena, plant.layout, self.physics, arm, arm + 1)
-        angle = self.exact_readings[arm, -TRUTH]
+        angle = self.exact_readings[arm, TRUTH_ANGLE - TRUTH_SIZE]
         own[:] = self.outcome[:, arm] = 0.0
         own[at.LENGTH], own[at.PER_TORQUE] = drawn.constants.get("beam", {}).get("length", 1.0), per_torque_of(drawn)
         own[at.FIRST_ANGLE] = angle
         own[at.FIRST_TARGET] = self.outcome[at.TARGET, arm] = angle if setup.task.hold else setup.task.target
-        self.history[arm] = self.sensor_output[arm] = self.exact_readings[arm, :-TRUTH]
+        self.history[arm] = self.sensor_output[arm] = self.exact_readings[arm, :-TRUTH_SIZE]
         self.kernel.after_reset(self.arena, self.places, self.keys, self.observations, arm)
 
     def _run_up(self, plant: Plant) -> Floats:

@@ -29,7 +29,6 @@ from flexarm_env.env.layout import (
     TARGET,
     TERMINATED,
     TERMS,
-    TRUTH_ROWS,
     WEIGHTS,
     own_of,
     row_of,
@@ -37,6 +36,7 @@ from flexarm_env.env.layout import (
 )
 from flexarm_env.env.placeholder import write_terms
 from flexarm_env.env.sensing import tap_command, write_observation
+from flexarm_env.plant.truth import TRUTH_ANGLE, TRUTH_DEFLECTION, TRUTH_LOST, TRUTH_SPEED, TRUTH_STUCK
 from flexarm_env.tasks.reward import Sample
 
 
@@ -54,7 +54,7 @@ def after_step(arena, places, keys, observations, first, last):
     """
     for arm in range(first, last):
         write_reward(arena, places, arm)
-        write_truth(arena, places, arm)
+        copy_truth_to_outcome(arena, places, arm)
         write_observation(arena, places, keys[arm], observations, arm)
         arena[places[AT_PUSHES] + arm] = tap_command(arena, places, keys[arm], arm)
 
@@ -62,7 +62,7 @@ def after_step(arena, places, keys, observations, first, last):
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
 def after_reset(arena, places, keys, observations, arm):
     """Observe an arm at the start of an episode, and draw the disturbances of its first sample."""
-    write_truth(arena, places, arm)
+    copy_truth_to_outcome(arena, places, arm)
     write_observation(arena, places, keys[arm], observations, arm)
     arena[places[AT_PUSHES] + arm] = tap_command(arena, places, keys[arm], arm)
 
@@ -80,10 +80,10 @@ def request(actions, arena, places, limit):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def write_truth(a, places, arm):
-    """Copy an arm's truth to the rows of the outcome."""
+def copy_truth_to_outcome(a, places, arm):
+    """Copy an arm's truth, all but whether it is lost, to the rows of the outcome from HUB_ANGLE on."""
     truth, row, row_each = truth_of(places, arm), row_of(places, HUB_ANGLE, arm), places[ROW_EACH]
-    for i in range(TRUTH_ROWS):
+    for i in range(TRUTH_LOST):
         a[row + i * row_each] = a[truth + i]
 
 
@@ -98,7 +98,8 @@ def write_reward(a, places, arm):
     if a[settings + HALF_PERIOD] > 0.0:
         half = math.floor(a[sample] * a[settings + INTERVAL] / a[settings + HALF_PERIOD] + 1e-9)
         a[target] = a[own + FIRST_TARGET] * (1.0 if half % 2 == 0 else -1.0)
-    angle, speed, tip, stuck, lost = a[truth], a[truth + 1], a[truth + 2], a[truth + 3] > 0.0, a[truth + 4] > 0.0
+    angle, speed, tip = a[truth + TRUTH_ANGLE], a[truth + TRUTH_SPEED], a[truth + TRUTH_DEFLECTION]
+    stuck, lost = a[truth + TRUTH_STUCK] > 0.0, a[truth + TRUTH_LOST] > 0.0
     failed = lost or not abs(angle - a[own + FIRST_ANGLE]) <= a[settings + RANGE]
     if lost:  # not finite: rewarded like a straight arm at rest at the end of its range
         angle, speed, tip = a[own + FIRST_ANGLE] + a[settings + RANGE], 0.0, 0.0

@@ -13,10 +13,9 @@ from numba import njit
 FIRST_TARGET, FIRST_ANGLE, TAP_LEFT, TAP, DROP_LEFT, DROPPED, LENGTH, PER_TORQUE = range(8)
 COLUMNS = 8
 
-# --- rows of the outcome of a step, one number for each arm; the reward's terms come last
+# --- rows of the outcome of a step, one number for each arm; HUB_ANGLE to STUCK are the truth up to TRUTH_LOST (plant.truth), in
+# its order; the reward's terms come last
 REWARD, TERMINATED, SAMPLE, HUB_ANGLE, HUB_SPEED, TIP_DEFLECTION, STUCK, TARGET, COMMAND, TERMS = range(10)
-#: Of the plant's truth: angle, speed, deflection, stuck. One more says whether the arm is lost, its numbers no longer finite.
-TRUTH_ROWS = 4
 
 # --- columns of each sensor's numbers
 NOISE, STEP, PER_STEP, LARGEST, PER_SCALE, WHOLE_DELAY, SHARE_OF_DELAY = range(7)

@@ -11,9 +11,7 @@ from flexarm_env.plant.propagate import inlined_dot
 from flexarm_env.plant.readings import measure
 from flexarm_env.plant.replay import is_lost
 from flexarm_env.plant.stick_slip import is_stuck, record
-
-#: Columns of the truth after the readings: hub angle and speed, tip deflection, whether the hub sticks, whether it diverged.
-TRUTH = 5
+from flexarm_env.plant.truth import TRUTH_ANGLE, TRUTH_DEFLECTION, TRUTH_LOST, TRUTH_SIZE, TRUTH_SPEED, TRUTH_STUCK
 
 # --- places of a batch's quantities in its array, and distances from one arm's to the next
 AT_CONSTANTS, CONSTANTS_EACH, AT_STATES, STATE_EACH, AT_COMMANDS, AT_PUSHES, AT_LOOKS, AT_SCRATCH, SCRATCH_EACH = range(9)
@@ -21,16 +19,17 @@ AT_CONSTANTS, CONSTANTS_EACH, AT_STATES, STATE_EACH, AT_COMMANDS, AT_PUSHES, AT_
 
 @njit(forceinline=True)
 def write_truth(d: Numbers, n: Places, s: Numbers, out: Numbers, first: int) -> None:
-    """Write hub angle [rad], hub speed [rad/s], tip deflection [m] and whether the hub sticks, to out from `first` on."""
+    """Write the truth (TRUTH_SIZE,), see truth, to out from `first` on."""
     mode = int(s[at.MODE])
     size, count = 2 * n[at.BLOCKS], n[at.COORDINATES]
     rows = record(n, mode) + n[at.PHYSICAL]
     stuck = is_stuck(mode, 0)
-    out[first] = s[at.HELD_HUB] if stuck else inlined_dot(d, rows, s, at.HEADER, size)
-    out[first + 1] = 0.0 if stuck else inlined_dot(d, rows + count * size, s, at.HEADER, size)
-    out[first + 2] = inlined_dot(d, rows + (count - 2) * size, s, at.HEADER, size) if count > n[at.BODIES] else 0.0
-    out[first + 3] = 1.0 if stuck else 0.0
-    out[first + 4] = 1.0 if is_lost(n, s) else 0.0
+    out[first + TRUTH_ANGLE] = s[at.HELD_HUB] if stuck else inlined_dot(d, rows, s, at.HEADER, size)
+    out[first + TRUTH_SPEED] = 0.0 if stuck else inlined_dot(d, rows + count * size, s, at.HEADER, size)
+    deflection = inlined_dot(d, rows + (count - 2) * size, s, at.HEADER, size) if count > n[at.BODIES] else 0.0
+    out[first + TRUTH_DEFLECTION] = deflection
+    out[first + TRUTH_STUCK] = 1.0 if stuck else 0.0
+    out[first + TRUTH_LOST] = 1.0 if is_lost(n, s) else 0.0
 
 
 @njit
@@ -39,8 +38,8 @@ def look_batch(arena: Numbers, n: Places, places: Places, first: int, last: int)
     for arm in range(first, last):
         constants = arena[places[AT_CONSTANTS] + arm * places[CONSTANTS_EACH] :]
         state = arena[places[AT_STATES] + arm * places[STATE_EACH] :]
-        measure(constants, n, state, arena, places[AT_LOOKS] + arm * (n[at.SIGNALS] + TRUTH))
-        write_truth(constants, n, state, arena, places[AT_LOOKS] + arm * (n[at.SIGNALS] + TRUTH) + n[at.SIGNALS])
+        measure(constants, n, state, arena, places[AT_LOOKS] + arm * (n[at.SIGNALS] + TRUTH_SIZE))
+        write_truth(constants, n, state, arena, places[AT_LOOKS] + arm * (n[at.SIGNALS] + TRUTH_SIZE) + n[at.SIGNALS])
 
 
 @njit

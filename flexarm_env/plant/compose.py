@@ -85,6 +85,7 @@ FILES = (
     "control_step.py",
     "readings.py",
     "replay.py",
+    "truth.py",
     "batch.py",
 )
 
