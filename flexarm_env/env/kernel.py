@@ -25,7 +25,7 @@ from flexarm_env.env.layout import (
     RANGE,
     REWARD,
     ROW_EACH,
-    SAMPLE,
+    SAMPLE_COUNT,
     TARGET,
     TERMINATED,
     TERMS,
@@ -53,7 +53,11 @@ def after_step(arena, places, keys, observations, first, last):
         last: behind the last of them.
     """
     for arm in range(first, last):
-        write_reward(arena, places, arm)
+        advance_clock(arena, places, arm)
+        move_target(arena, places, arm)
+        command_change = write_command(arena, places, arm)
+        failed = write_terminated(arena, places, arm)
+        write_reward(arena, places, arm, command_change, failed)
         copy_truth_to_outcome(arena, places, arm)
         write_observation(arena, places, keys[arm], observations, arm)
         arena[places[AT_PUSHES] + arm] = tap_command(arena, places, keys[arm], arm)
@@ -88,34 +92,59 @@ def copy_truth_to_outcome(a, places, arm):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def write_reward(a, places, arm):
-    """Move the target of an arm on; write its command, its reward, the reward's terms and whether the episode ends."""
-    settings, own, requested = places[AT_SETTINGS], own_of(places, arm), a[places[AT_REQUESTED] + arm]
-    truth, row, row_each = truth_of(places, arm), row_of(places, 0, arm), places[ROW_EACH]
-    sample, target, command = row + SAMPLE * row_each, row + TARGET * row_each, row + COMMAND * row_each
-    a[sample] += 1.0
-    change, a[command] = requested - a[command], requested
+def advance_clock(a, places, arm):
+    """Count an arm's sample. What follows in the sample reads this number: its target, its draws, its time."""
+    a[row_of(places, SAMPLE_COUNT, arm)] += 1.0
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
+def move_target(a, places, arm):
+    """Change the sign of an arm's target after each half period, where the task has one."""
+    settings, own = places[AT_SETTINGS], own_of(places, arm)
     if a[settings + HALF_PERIOD] > 0.0:
-        half = math.floor(a[sample] * a[settings + INTERVAL] / a[settings + HALF_PERIOD] + 1e-9)
-        a[target] = a[own + FIRST_TARGET] * (1.0 if half % 2 == 0 else -1.0)
+        half = math.floor(a[row_of(places, SAMPLE_COUNT, arm)] * a[settings + INTERVAL] / a[settings + HALF_PERIOD] + 1e-9)
+        a[row_of(places, TARGET, arm)] = a[own + FIRST_TARGET] * (1.0 if half % 2 == 0 else -1.0)
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
+def write_command(a, places, arm):
+    """Write the command that an arm requested to the outcome; return its change from the sample before [A or V]."""
+    command, requested = row_of(places, COMMAND, arm), a[places[AT_REQUESTED] + arm]
+    change = requested - a[command]
+    a[command] = requested
+    return change
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
+def write_terminated(a, places, arm):
+    """Write whether an arm's episode ends, and return it: the hub left its range, or the arm is lost."""
+    own, truth = own_of(places, arm), truth_of(places, arm)
+    turned = abs(a[truth + TRUTH_ANGLE] - a[own + FIRST_ANGLE])
+    failed = a[truth + TRUTH_LOST] > 0.0 or not turned <= a[places[AT_SETTINGS] + RANGE]
+    a[row_of(places, TERMINATED, arm)] = 1.0 if failed else 0.0
+    return failed
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
+def write_reward(a, places, arm, command_change, failed):
+    """Write an arm's reward and the reward's terms."""
+    settings, own, truth = places[AT_SETTINGS], own_of(places, arm), truth_of(places, arm)
     angle, speed, tip = a[truth + TRUTH_ANGLE], a[truth + TRUTH_SPEED], a[truth + TRUTH_DEFLECTION]
-    stuck, lost = a[truth + TRUTH_STUCK] > 0.0, a[truth + TRUTH_LOST] > 0.0
-    failed = lost or not abs(angle - a[own + FIRST_ANGLE]) <= a[settings + RANGE]
-    if lost:  # not finite: rewarded like a straight arm at rest at the end of its range
+    if a[truth + TRUTH_LOST] > 0.0:  # not finite: rewarded like a straight arm at rest at the end of its range
         angle, speed, tip = a[own + FIRST_ANGLE] + a[settings + RANGE], 0.0, 0.0
-    moment = Sample(
+    sample = Sample(
         hub_angle=angle,
         hub_speed=speed,
         tip_deflection=tip,
-        stuck=stuck,
-        target=a[target],
-        command=requested / a[settings + LIMIT],
-        command_change=change / a[settings + LIMIT],
+        stuck=a[truth + TRUTH_STUCK] > 0.0,
+        target=a[row_of(places, TARGET, arm)],
+        command=a[row_of(places, COMMAND, arm)] / a[settings + LIMIT],
+        command_change=command_change / a[settings + LIMIT],
         start_angle=a[own + FIRST_ANGLE],
         beam_length=a[own + LENGTH],
-        time=a[sample] * a[settings + INTERVAL],
+        time=a[row_of(places, SAMPLE_COUNT, arm)] * a[settings + INTERVAL],
         failed=failed,
     )
+    terms = row_of(places, TERMS, arm)
     # write_terms of the task's own terms, which compose writes in the place of the imported one
-    a[row + REWARD * row_each] = write_terms(a, settings + WEIGHTS, row + TERMS * row_each, row_each, moment)
-    a[row + TERMINATED * row_each] = 1.0 if failed else 0.0
+    a[row_of(places, REWARD, arm)] = write_terms(a, settings + WEIGHTS, terms, places[ROW_EACH], sample)

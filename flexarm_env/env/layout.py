@@ -15,7 +15,7 @@ COLUMNS = 8
 
 # --- rows of the outcome of a step, one number for each arm; HUB_ANGLE to STUCK are the truth up to TRUTH_LOST (plant.truth), in
 # its order; the reward's terms come last
-REWARD, TERMINATED, SAMPLE, HUB_ANGLE, HUB_SPEED, TIP_DEFLECTION, STUCK, TARGET, COMMAND, TERMS = range(10)
+REWARD, TERMINATED, SAMPLE_COUNT, HUB_ANGLE, HUB_SPEED, TIP_DEFLECTION, STUCK, TARGET, COMMAND, TERMS = range(10)
 
 # --- columns of each sensor's numbers
 NOISE, STEP, PER_STEP, LARGEST, PER_SCALE, WHOLE_DELAY, SHARE_OF_DELAY = range(7)

@@ -21,7 +21,7 @@ from flexarm_env.env.layout import (
     PER_SCALE,
     PER_STEP,
     PER_TORQUE,
-    SAMPLE,
+    SAMPLE_COUNT,
     SENSOR,
     SHARE_OF_DELAY,
     SIGNALS,
@@ -50,7 +50,7 @@ def tap_command(a, places, key, arm):
     """Draw a tap on the hub in the next sample; return it as an addition to the command [A or V]."""
     settings, own = places[AT_SETTINGS], own_of(places, arm)
     if a[own + TAP_LEFT] <= 0.0 and a[settings + TAP_CHANCE] > 0.0:
-        counter = 2 * int(a[row_of(places, SAMPLE, arm)])
+        counter = 2 * int(a[row_of(places, SAMPLE_COUNT, arm)])
         if uniform(key, TAPS_STREAM, counter) < a[settings + TAP_CHANCE]:
             a[own + TAP_LEFT] = a[settings + TAP_SAMPLES]
             a[own + TAP] = a[settings + TAP_TORQUE] * (2.0 * uniform(key, TAPS_STREAM, counter + 1) - 1.0)
@@ -68,15 +68,15 @@ def write_observation(a, places, key, observations, arm):
     its last output.
     """
     settings, signals = places[AT_SETTINGS], places[SIGNALS]
-    sample = int(a[row_of(places, SAMPLE, arm)])
+    sample_count = int(a[row_of(places, SAMPLE_COUNT, arm)])
     exact, output = exact_of(places, arm), output_of(places, arm)
-    dropped = _dropped_sensor(a, places, key, sample, arm) if a[settings + DROP_CHANCE] > 0.0 else -1
+    dropped = _dropped_sensor(a, places, key, sample_count, arm) if a[settings + DROP_CHANCE] > 0.0 else -1
     late = places[DEPTH] > 0
     stream = mixed(key + np.uint64(SENSORS_STREAM) * GOLDEN)
     for j in range(signals):
         sensor = places[AT_SENSORS] + j * SENSOR
-        quantity = _delayed(a, places, sensor, sample, arm, j) if late else a[exact + j]
-        reading = quantity + a[sensor + NOISE] * normal(stream, sample * signals + j)
+        quantity = _delayed(a, places, sensor, sample_count, arm, j) if late else a[exact + j]
+        reading = quantity + a[sensor + NOISE] * normal(stream, sample_count * signals + j)
         if a[sensor + STEP] > 0.0:
             reading = np.rint(reading * a[sensor + PER_STEP]) * a[sensor + STEP] + 0.0
         if not math.isfinite(reading) or j == dropped:
@@ -88,24 +88,24 @@ def write_observation(a, places, key, observations, arm):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def _delayed(a, places, sensor, sample, arm, j):
+def _delayed(a, places, sensor, sample_count, arm, j):
     """Store the exact reading of an arm's sensor j, and return the one that its delay lets out now."""
     signals, depth = places[SIGNALS], places[DEPTH]
     history = history_of(places, arm) + j
-    a[history + (sample % depth) * signals] = a[exact_of(places, arm) + j]
-    late = sample - int(a[sensor + WHOLE_DELAY])
+    a[history + (sample_count % depth) * signals] = a[exact_of(places, arm) + j]
+    late = sample_count - int(a[sensor + WHOLE_DELAY])
     quantity, before = a[history + (max(late, 0) % depth) * signals], a[history + (max(late - 1, 0) % depth) * signals]
     return quantity + a[sensor + SHARE_OF_DELAY] * (before - quantity)
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def _dropped_sensor(a, places, key, sample, arm):
+def _dropped_sensor(a, places, key, sample_count, arm):
     """Draw drop-outs; return the number of the arm's sensor that has dropped out, or -1."""
     settings, own = places[AT_SETTINGS], own_of(places, arm)
-    may = a[own + DROP_LEFT] <= 0.0 and sample > 0
-    if may and uniform(key, DROPS_STREAM, 2 * sample) < a[settings + DROP_CHANCE]:
+    may = a[own + DROP_LEFT] <= 0.0 and sample_count > 0
+    if may and uniform(key, DROPS_STREAM, 2 * sample_count) < a[settings + DROP_CHANCE]:
         a[own + DROP_LEFT] = a[settings + DROP_SAMPLES]
-        a[own + DROPPED] = math.floor(places[SIGNALS] * uniform(key, DROPS_STREAM, 2 * sample + 1))
+        a[own + DROPPED] = math.floor(places[SIGNALS] * uniform(key, DROPS_STREAM, 2 * sample_count + 1))
     if a[own + DROP_LEFT] <= 0.0:
         return -1
     a[own + DROP_LEFT] -= 1.0
