@@ -62,7 +62,7 @@ def arena_of(setup: Setup, plant: Plant, sensors: Floats, count: int, threads: i
             "exact": (count, signals + TRUTH_SIZE),
             "requested": (count,),
             "applied": (count,),
-            "pushes": (count,),
+            "tap_commands": (count,),
             "sensor_output": (count, signals),
             "history": (count, depth, signals),
             "constants": (count if setup.variation.ranges else 1, plant.constants.size),
@@ -78,7 +78,7 @@ def places_of(arena: Arena) -> Indices:
     places[at.AT_SETTINGS], places[at.AT_SENSORS], places[at.AT_OWN] = starts["settings"], starts["sensors"], starts["own"]
     places[at.AT_EXACT], places[at.EXACT_EACH] = starts["exact"], views["exact"].shape[1]
     places[at.AT_OUTCOME], places[at.ROW_EACH] = starts["outcome"], views["outcome"].shape[1]
-    places[at.AT_REQUESTED], places[at.AT_PUSHES] = starts["requested"], starts["pushes"]
+    places[at.AT_REQUESTED], places[at.AT_TAP_COMMANDS] = starts["requested"], starts["tap_commands"]
     places[at.AT_HISTORY], places[at.AT_SENSOR_OUTPUT] = starts["history"], starts["sensor_output"]
     _, places[at.DEPTH], places[at.SIGNALS] = views["history"].shape
     return places
@@ -96,6 +96,6 @@ def physics_of(arena: Arena, delayed: bool) -> Indices:
     places[plant_at.AT_CONSTANTS], places[plant_at.CONSTANTS_EACH] = starts["constants"], size if arms > 1 else 0
     places[plant_at.AT_STATES], places[plant_at.STATE_EACH] = starts["states"], views["states"].shape[1]
     places[plant_at.AT_COMMANDS] = starts["applied" if delayed else "requested"]
-    places[plant_at.AT_PUSHES], places[plant_at.AT_LOOKS] = starts["pushes"], starts["exact"]
+    places[plant_at.AT_TAP_COMMANDS], places[plant_at.AT_LOOKS] = starts["tap_commands"], starts["exact"]
     places[plant_at.AT_SCRATCH], places[plant_at.SCRATCH_EACH] = starts["scratch"], views["scratch"].shape[1]
     return places

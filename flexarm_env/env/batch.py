@@ -12,7 +12,7 @@ from flexarm_env.env import layout as at
 from flexarm_env.env.arena import arena_of, physics_of, places_of
 from flexarm_env.env.compose import environment_kernel
 from flexarm_env.env.draws import key_of, uniform
-from flexarm_env.env.setup import Setup, check_layouts, per_torque_of, sensors_of, settings_of
+from flexarm_env.env.setup import Setup, check_layouts, command_per_torque_of, sensors_of, settings_of
 from flexarm_env.env.shares import Arms
 from flexarm_env.env.threads import Crew
 from flexarm_env.env.variation import hash_of
@@ -112,7 +112,8 @@ class Batch:
         plant.kernel.look_batch(self.arena, plant.layout, self.physics, arm, arm + 1)
         angle = self.exact_readings[arm, TRUTH_ANGLE - TRUTH_SIZE]
         own[:] = self.outcome[:, arm] = 0.0
-        own[at.LENGTH], own[at.PER_TORQUE] = drawn.constants.get("beam", {}).get("length", 1.0), per_torque_of(drawn)
+        own[at.LENGTH] = drawn.constants.get("beam", {}).get("length", 1.0)
+        own[at.COMMAND_PER_TORQUE] = command_per_torque_of(drawn)
         own[at.FIRST_ANGLE] = angle
         own[at.FIRST_TARGET] = self.outcome[at.TARGET, arm] = angle if setup.task.hold else setup.task.target
         self.history[arm] = self.sensor_output[arm] = self.exact_readings[arm, :-TRUTH_SIZE]

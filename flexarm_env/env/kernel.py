@@ -1,4 +1,4 @@
-"""A sample of many arms beside their physics: disturbances, sensors, target, reward, end.
+"""A sample of many arms beside their physics: taps, sensors, target, reward, end.
 
 `compose` makes one module of this file, those that it calls and the terms of a task's reward, so that its compiled
 code in numba's cache is never out of date. The kernels count no references (_nrt), for the reasons given in plant/compose.py.
@@ -11,9 +11,9 @@ import math
 from numba import njit
 
 from flexarm_env.env.layout import (
-    AT_PUSHES,
     AT_REQUESTED,
     AT_SETTINGS,
+    AT_TAP_COMMANDS,
     COMMAND,
     FIRST_ANGLE,
     FIRST_TARGET,
@@ -35,14 +35,14 @@ from flexarm_env.env.layout import (
     truth_of,
 )
 from flexarm_env.env.placeholder import write_terms
-from flexarm_env.env.sensing import tap_command, write_observation
+from flexarm_env.env.sensing import draw_tap_command, write_observation
 from flexarm_env.plant.truth import TRUTH_ANGLE, TRUTH_DEFLECTION, TRUTH_LOST, TRUTH_SPEED, TRUTH_STUCK
 from flexarm_env.tasks.reward import Sample
 
 
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
 def after_step(arena, places, keys, observations, first, last):
-    """Reward and observe arms first to last - 1 after their physics, and draw the disturbances of their next sample.
+    """Reward and observe arms first to last - 1 after their physics, and draw the taps of their next sample.
 
     Args:
         arena: all numbers of the arms, one after another.
@@ -60,15 +60,15 @@ def after_step(arena, places, keys, observations, first, last):
         write_reward(arena, places, arm, command_change, failed)
         copy_truth_to_outcome(arena, places, arm)
         write_observation(arena, places, keys[arm], observations, arm)
-        arena[places[AT_PUSHES] + arm] = tap_command(arena, places, keys[arm], arm)
+        arena[places[AT_TAP_COMMANDS] + arm] = draw_tap_command(arena, places, keys[arm], arm)
 
 
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
 def after_reset(arena, places, keys, observations, arm):
-    """Observe an arm at the start of an episode, and draw the disturbances of its first sample."""
+    """Observe an arm at the start of an episode, and draw the tap of its first sample."""
     copy_truth_to_outcome(arena, places, arm)
     write_observation(arena, places, keys[arm], observations, arm)
-    arena[places[AT_PUSHES] + arm] = tap_command(arena, places, keys[arm], arm)
+    arena[places[AT_TAP_COMMANDS] + arm] = draw_tap_command(arena, places, keys[arm], arm)
 
 
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)

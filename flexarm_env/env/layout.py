@@ -6,11 +6,12 @@ from numba import njit
 
 # --- settings: one number each, for all arms; the weights of the reward's terms come last
 (
-    INTERVAL, HALF_PERIOD, RANGE, LIMIT, TAP_CHANCE, TAP_TORQUE, TAP_SAMPLES, DROP_CHANCE, DROP_SAMPLES, TARGET_SCALE, WEIGHTS,
+    INTERVAL, HALF_PERIOD, RANGE, LIMIT, TAP_CHANCE, LARGEST_TAP_TORQUE, TAP_SAMPLES, DROP_CHANCE, DROP_SAMPLES,
+    TARGET_SCALE, WEIGHTS,
 ) = range(11)  # fmt: skip
 
 # --- columns of each arm's own numbers
-FIRST_TARGET, FIRST_ANGLE, TAP_LEFT, TAP, DROP_LEFT, DROPPED, LENGTH, PER_TORQUE = range(8)
+FIRST_TARGET, FIRST_ANGLE, TAP_LEFT, TAP_TORQUE, DROP_LEFT, DROPPED, LENGTH, COMMAND_PER_TORQUE = range(8)
 COLUMNS = 8
 
 # --- rows of the outcome of a step, one number for each arm; HUB_ANGLE to STUCK are the truth up to TRUTH_LOST (plant.truth), in
@@ -18,13 +19,13 @@ COLUMNS = 8
 REWARD, TERMINATED, SAMPLE_COUNT, HUB_ANGLE, HUB_SPEED, TIP_DEFLECTION, STUCK, TARGET, COMMAND, TERMS = range(10)
 
 # --- columns of each sensor's numbers
-NOISE, STEP, PER_STEP, LARGEST, PER_SCALE, WHOLE_DELAY, SHARE_OF_DELAY = range(7)
+NOISE, STEP, INVERSE_STEP, LARGEST, INVERSE_SCALE, WHOLE_DELAY, SHARE_OF_DELAY = range(7)
 SENSOR = 7
 
 # --- places: where each quantity begins in the common array, and how far one arm's or row's numbers are from the next
 (
-    AT_SETTINGS, AT_SENSORS, AT_OWN, AT_EXACT, EXACT_EACH, AT_REQUESTED, AT_PUSHES, AT_HISTORY, AT_SENSOR_OUTPUT, AT_OUTCOME,
-    ROW_EACH, SIGNALS, DEPTH,
+    AT_SETTINGS, AT_SENSORS, AT_OWN, AT_EXACT, EXACT_EACH, AT_REQUESTED, AT_TAP_COMMANDS, AT_HISTORY, AT_SENSOR_OUTPUT,
+    AT_OUTCOME, ROW_EACH, SIGNALS, DEPTH,
 ) = range(13)  # fmt: skip
 PLACES = 13
 

@@ -11,22 +11,22 @@ from flexarm_env.env.draws import GOLDEN, mixed, normal, uniform
 from flexarm_env.env.layout import (
     AT_SENSORS,
     AT_SETTINGS,
+    COMMAND_PER_TORQUE,
     DEPTH,
     DROP_CHANCE,
     DROP_LEFT,
     DROP_SAMPLES,
     DROPPED,
+    INVERSE_SCALE,
+    INVERSE_STEP,
     LARGEST,
+    LARGEST_TAP_TORQUE,
     NOISE,
-    PER_SCALE,
-    PER_STEP,
-    PER_TORQUE,
     SAMPLE_COUNT,
     SENSOR,
     SHARE_OF_DELAY,
     SIGNALS,
     STEP,
-    TAP,
     TAP_CHANCE,
     TAP_LEFT,
     TAP_SAMPLES,
@@ -46,18 +46,18 @@ SENSORS_STREAM, TAPS_STREAM, DROPS_STREAM = 1, 2, 3
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def tap_command(a, places, key, arm):
+def draw_tap_command(a, places, key, arm):
     """Draw a tap on the hub in the next sample; return it as an addition to the command [A or V]."""
     settings, own = places[AT_SETTINGS], own_of(places, arm)
     if a[own + TAP_LEFT] <= 0.0 and a[settings + TAP_CHANCE] > 0.0:
         counter = 2 * int(a[row_of(places, SAMPLE_COUNT, arm)])
         if uniform(key, TAPS_STREAM, counter) < a[settings + TAP_CHANCE]:
             a[own + TAP_LEFT] = a[settings + TAP_SAMPLES]
-            a[own + TAP] = a[settings + TAP_TORQUE] * (2.0 * uniform(key, TAPS_STREAM, counter + 1) - 1.0)
+            a[own + TAP_TORQUE] = a[settings + LARGEST_TAP_TORQUE] * (2.0 * uniform(key, TAPS_STREAM, counter + 1) - 1.0)
     if a[own + TAP_LEFT] <= 0.0:
         return 0.0
     a[own + TAP_LEFT] -= 1.0
-    return a[own + TAP] * a[own + PER_TORQUE]
+    return a[own + TAP_TORQUE] * a[own + COMMAND_PER_TORQUE]
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
@@ -78,12 +78,12 @@ def write_observation(a, places, key, observations, arm):
         quantity = _delayed(a, places, sensor, sample_count, arm, j) if late else a[exact + j]
         reading = quantity + a[sensor + NOISE] * normal(stream, sample_count * signals + j)
         if a[sensor + STEP] > 0.0:
-            reading = np.rint(reading * a[sensor + PER_STEP]) * a[sensor + STEP] + 0.0
+            reading = np.rint(reading * a[sensor + INVERSE_STEP]) * a[sensor + STEP] + 0.0
         if not math.isfinite(reading) or j == dropped:
             reading = a[output + j]
         reading = min(max(reading, -a[sensor + LARGEST]), a[sensor + LARGEST])
         a[output + j] = reading
-        observations[arm, j] = reading * a[sensor + PER_SCALE]
+        observations[arm, j] = reading * a[sensor + INVERSE_SCALE]
     observations[arm, signals] = a[row_of(places, TARGET, arm)] / a[settings + TARGET_SCALE]
 
 

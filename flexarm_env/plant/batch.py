@@ -14,7 +14,7 @@ from flexarm_env.plant.stick_slip import is_stuck, record
 from flexarm_env.plant.truth import TRUTH_ANGLE, TRUTH_DEFLECTION, TRUTH_LOST, TRUTH_SIZE, TRUTH_SPEED, TRUTH_STUCK
 
 # --- places of a batch's quantities in its array, and distances from one arm's to the next
-AT_CONSTANTS, CONSTANTS_EACH, AT_STATES, STATE_EACH, AT_COMMANDS, AT_PUSHES, AT_LOOKS, AT_SCRATCH, SCRATCH_EACH = range(9)
+AT_CONSTANTS, CONSTANTS_EACH, AT_STATES, STATE_EACH, AT_COMMANDS, AT_TAP_COMMANDS, AT_LOOKS, AT_SCRATCH, SCRATCH_EACH = range(9)
 
 
 @njit(forceinline=True)
@@ -47,15 +47,15 @@ def step_batch(arena: Numbers, n: Places, places: Places, first: int, last: int,
     """Advance arms first to last - 1 by one sample and write their readings and truth.
 
     All numbers lie in one array, at `places`, since numba pays for each array at each call. Every arm has the layout n, and
-    its own constants unless CONSTANTS_EACH is 0. Its push is added to the drive's output for its command. `part` is the
+    its own constants unless CONSTANTS_EACH is 0. The command of a tap on its hub is added to the drive's output. `part` is the
     number of a thread, which has a scratch of its own.
     """
     scratch = arena[places[AT_SCRATCH] + part * places[SCRATCH_EACH] :]
     for arm in range(first, last):
         constants = arena[places[AT_CONSTANTS] + arm * places[CONSTANTS_EACH] :]
         state = arena[places[AT_STATES] + arm * places[STATE_EACH] :]
-        push = arena[places[AT_PUSHES] + arm]
+        tap_command = arena[places[AT_TAP_COMMANDS] + arm]
         before = state[at.COMMAND]
         command = drive_output(constants, n, state, arena[places[AT_COMMANDS] + arm])
-        control_step(constants, n, state, before + push, command + push, scratch)
+        control_step(constants, n, state, before + tap_command, command + tap_command, scratch)
     look_batch(arena, n, places, first, last)
