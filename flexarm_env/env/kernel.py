@@ -41,40 +41,40 @@ from flexarm_env.tasks.reward import Sample
 
 
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
-def after_step(arena, places, keys, observations, first, last):
+def after_step(arena, offsets, rng_keys, observations, first, last):
     """Reward and observe arms first to last - 1 after their physics, and draw the taps of their next sample.
 
     Args:
         arena: all numbers of the arms, one after another.
-        places: of the quantities in the arena, see layout.
-        keys: (arms,) of the episodes.
+        offsets: of the quantities in the arena, see layout.
+        rng_keys: (arms,) of the episodes' draws.
         observations: (arms, signals + 1), to be written.
         first: of the arms.
         last: behind the last of them.
     """
     for arm in range(first, last):
-        advance_clock(arena, places, arm)
-        move_target(arena, places, arm)
-        command_change = write_command(arena, places, arm)
-        failed = write_terminated(arena, places, arm)
-        write_reward(arena, places, arm, command_change, failed)
-        copy_truth_to_outcome(arena, places, arm)
-        write_observation(arena, places, keys[arm], observations, arm)
-        arena[places[AT_TAP_COMMANDS] + arm] = draw_tap_command(arena, places, keys[arm], arm)
+        advance_clock(arena, offsets, arm)
+        move_target(arena, offsets, arm)
+        command_change = write_command(arena, offsets, arm)
+        failed = write_terminated(arena, offsets, arm)
+        write_reward(arena, offsets, arm, command_change, failed)
+        copy_truth_to_outcome(arena, offsets, arm)
+        write_observation(arena, offsets, rng_keys[arm], observations, arm)
+        arena[offsets[AT_TAP_COMMANDS] + arm] = draw_tap_command(arena, offsets, rng_keys[arm], arm)
 
 
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
-def after_reset(arena, places, keys, observations, arm):
+def after_reset(arena, offsets, rng_keys, observations, arm):
     """Observe an arm at the start of an episode, and draw the tap of its first sample."""
-    copy_truth_to_outcome(arena, places, arm)
-    write_observation(arena, places, keys[arm], observations, arm)
-    arena[places[AT_TAP_COMMANDS] + arm] = draw_tap_command(arena, places, keys[arm], arm)
+    copy_truth_to_outcome(arena, offsets, arm)
+    write_observation(arena, offsets, rng_keys[arm], observations, arm)
+    arena[offsets[AT_TAP_COMMANDS] + arm] = draw_tap_command(arena, offsets, rng_keys[arm], arm)
 
 
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
-def request(actions, arena, places, limit):
+def request(actions, arena, offsets, limit):
     """Write the commands that actions (arms,) request [A or V]; return the first arm whose action is not a number, or -1."""
-    requested = places[AT_REQUESTED]
+    requested = offsets[AT_REQUESTED]
     for arm in range(len(actions)):
         action = actions[arm]
         if not math.isfinite(action):
@@ -84,51 +84,51 @@ def request(actions, arena, places, limit):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def copy_truth_to_outcome(a, places, arm):
+def copy_truth_to_outcome(a, offsets, arm):
     """Copy an arm's truth, all but whether it is lost, to the rows of the outcome from HUB_ANGLE on."""
-    truth, row, row_each = truth_of(places, arm), row_of(places, HUB_ANGLE, arm), places[ROW_EACH]
+    truth, row, row_each = truth_of(offsets, arm), row_of(offsets, HUB_ANGLE, arm), offsets[ROW_EACH]
     for i in range(TRUTH_LOST):
         a[row + i * row_each] = a[truth + i]
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def advance_clock(a, places, arm):
+def advance_clock(a, offsets, arm):
     """Count an arm's sample. What follows in the sample reads this number: its target, its draws, its time."""
-    a[row_of(places, SAMPLE_COUNT, arm)] += 1.0
+    a[row_of(offsets, SAMPLE_COUNT, arm)] += 1.0
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def move_target(a, places, arm):
+def move_target(a, offsets, arm):
     """Change the sign of an arm's target after each half period, where the task has one."""
-    settings, own = places[AT_SETTINGS], own_of(places, arm)
+    settings, own = offsets[AT_SETTINGS], own_of(offsets, arm)
     if a[settings + HALF_PERIOD] > 0.0:
-        half = math.floor(a[row_of(places, SAMPLE_COUNT, arm)] * a[settings + INTERVAL] / a[settings + HALF_PERIOD] + 1e-9)
-        a[row_of(places, TARGET, arm)] = a[own + FIRST_TARGET] * (1.0 if half % 2 == 0 else -1.0)
+        half = math.floor(a[row_of(offsets, SAMPLE_COUNT, arm)] * a[settings + INTERVAL] / a[settings + HALF_PERIOD] + 1e-9)
+        a[row_of(offsets, TARGET, arm)] = a[own + FIRST_TARGET] * (1.0 if half % 2 == 0 else -1.0)
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def write_command(a, places, arm):
+def write_command(a, offsets, arm):
     """Write the command that an arm requested to the outcome; return its change from the sample before [A or V]."""
-    command, requested = row_of(places, COMMAND, arm), a[places[AT_REQUESTED] + arm]
+    command, requested = row_of(offsets, COMMAND, arm), a[offsets[AT_REQUESTED] + arm]
     change = requested - a[command]
     a[command] = requested
     return change
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def write_terminated(a, places, arm):
+def write_terminated(a, offsets, arm):
     """Write whether an arm's episode ends, and return it: the hub left its range, or the arm is lost."""
-    own, truth = own_of(places, arm), truth_of(places, arm)
+    own, truth = own_of(offsets, arm), truth_of(offsets, arm)
     turned = abs(a[truth + TRUTH_ANGLE] - a[own + FIRST_ANGLE])
-    failed = a[truth + TRUTH_LOST] > 0.0 or not turned <= a[places[AT_SETTINGS] + RANGE]
-    a[row_of(places, TERMINATED, arm)] = 1.0 if failed else 0.0
+    failed = a[truth + TRUTH_LOST] > 0.0 or not turned <= a[offsets[AT_SETTINGS] + RANGE]
+    a[row_of(offsets, TERMINATED, arm)] = 1.0 if failed else 0.0
     return failed
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def write_reward(a, places, arm, command_change, failed):
+def write_reward(a, offsets, arm, command_change, failed):
     """Write an arm's reward and the reward's terms."""
-    settings, own, truth = places[AT_SETTINGS], own_of(places, arm), truth_of(places, arm)
+    settings, own, truth = offsets[AT_SETTINGS], own_of(offsets, arm), truth_of(offsets, arm)
     angle, speed, tip = a[truth + TRUTH_ANGLE], a[truth + TRUTH_SPEED], a[truth + TRUTH_DEFLECTION]
     if a[truth + TRUTH_LOST] > 0.0:  # not finite: rewarded like a straight arm at rest at the end of its range
         angle, speed, tip = a[own + FIRST_ANGLE] + a[settings + RANGE], 0.0, 0.0
@@ -137,14 +137,14 @@ def write_reward(a, places, arm, command_change, failed):
         hub_speed=speed,
         tip_deflection=tip,
         stuck=a[truth + TRUTH_STUCK] > 0.0,
-        target=a[row_of(places, TARGET, arm)],
-        command=a[row_of(places, COMMAND, arm)] / a[settings + LIMIT],
+        target=a[row_of(offsets, TARGET, arm)],
+        command=a[row_of(offsets, COMMAND, arm)] / a[settings + LIMIT],
         command_change=command_change / a[settings + LIMIT],
         start_angle=a[own + FIRST_ANGLE],
         beam_length=a[own + LENGTH],
-        time=a[row_of(places, SAMPLE_COUNT, arm)] * a[settings + INTERVAL],
+        time=a[row_of(offsets, SAMPLE_COUNT, arm)] * a[settings + INTERVAL],
         failed=failed,
     )
-    terms = row_of(places, TERMS, arm)
+    terms = row_of(offsets, TERMS, arm)
     # write_terms of the task's own terms, which compose writes in the place of the imported one
-    a[row_of(places, REWARD, arm)] = write_terms(a, settings + WEIGHTS, terms, places[ROW_EACH], sample)
+    a[row_of(offsets, REWARD, arm)] = write_terms(a, settings + WEIGHTS, terms, offsets[ROW_EACH], sample)

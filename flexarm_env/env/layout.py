@@ -1,4 +1,4 @@
-"""Places of all numbers of a batch of arms, which lie in one array: the kernels pay for each array that they are given."""
+"""Offsets of all numbers of a batch of arms, which lie in one array: the kernels pay for each array that they are given."""
 
 from __future__ import annotations
 
@@ -22,45 +22,45 @@ REWARD, TERMINATED, SAMPLE_COUNT, HUB_ANGLE, HUB_SPEED, TIP_DEFLECTION, STUCK, T
 NOISE, STEP, INVERSE_STEP, LARGEST, INVERSE_SCALE, WHOLE_DELAY, SHARE_OF_DELAY = range(7)
 SENSOR = 7
 
-# --- places: where each quantity begins in the common array, and how far one arm's or row's numbers are from the next
+# --- offsets: where each quantity begins in the common array, and how far one arm's or row's numbers are from the next
 (
-    AT_SETTINGS, AT_SENSORS, AT_OWN, AT_EXACT, EXACT_EACH, AT_REQUESTED, AT_TAP_COMMANDS, AT_HISTORY, AT_SENSOR_OUTPUT,
+    AT_SETTINGS, AT_SENSORS, AT_OWN, AT_NOISELESS, NOISELESS_EACH, AT_REQUESTED, AT_TAP_COMMANDS, AT_HISTORY, AT_SENSOR_OUTPUT,
     AT_OUTCOME, ROW_EACH, SIGNALS, DEPTH,
 ) = range(13)  # fmt: skip
-PLACES = 13
+OFFSETS = 13
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def row_of(places, row, arm):
+def row_of(offsets, row, arm):
     """Locate an arm's number in a row of the outcome."""
-    return places[AT_OUTCOME] + row * places[ROW_EACH] + arm
+    return offsets[AT_OUTCOME] + row * offsets[ROW_EACH] + arm
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def own_of(places, arm):
+def own_of(offsets, arm):
     """Locate an arm's own numbers."""
-    return places[AT_OWN] + arm * COLUMNS
+    return offsets[AT_OWN] + arm * COLUMNS
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def exact_of(places, arm):
+def noiseless_of(offsets, arm):
     """Locate an arm's readings without noise, delay and steps."""
-    return places[AT_EXACT] + arm * places[EXACT_EACH]
+    return offsets[AT_NOISELESS] + arm * offsets[NOISELESS_EACH]
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def truth_of(places, arm):
+def truth_of(offsets, arm):
     """Locate an arm's truth, behind its readings without noise."""
-    return exact_of(places, arm) + places[SIGNALS]
+    return noiseless_of(offsets, arm) + offsets[SIGNALS]
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def output_of(places, arm):
+def output_of(offsets, arm):
     """Locate an arm's last sensor output."""
-    return places[AT_SENSOR_OUTPUT] + arm * places[SIGNALS]
+    return offsets[AT_SENSOR_OUTPUT] + arm * offsets[SIGNALS]
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def history_of(places, arm):
+def history_of(offsets, arm):
     """Locate an arm's past readings (depth, signals)."""
-    return places[AT_HISTORY] + arm * places[DEPTH] * places[SIGNALS]
+    return offsets[AT_HISTORY] + arm * offsets[DEPTH] * offsets[SIGNALS]

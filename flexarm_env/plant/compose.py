@@ -64,7 +64,7 @@ ENTRANCES = (
     "drive_output",
     "control_step",
     "replay",
-    "look_batch",
+    "write_noiseless",
     "step_batch",
 )
 
