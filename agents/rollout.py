@@ -57,6 +57,6 @@ def roll_out(
         tip[k] = seen["hub_angle"] + seen["tip_deflection"] / length
         commands[k] = seen["command"]
         if strain is not None:
-            strains[k] = batch.exact_readings[:, strain]
+            strains[k] = batch.noiseless_readings[:, strain]
     envs.close()
     return Trajectories(tip, target, strains, commands, failed, start, 1.0 / rate)

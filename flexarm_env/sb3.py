@@ -12,7 +12,7 @@ from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
-from flexarm_env.env.layout import SAMPLE
+from flexarm_env.env.layout import SAMPLE_COUNT
 from flexarm_env.vector_env import FlexArmVectorEnv
 
 Array = NDArray[Any]
@@ -89,7 +89,7 @@ class FlexArmVecEnv(VecEnv):
             infos[i] = {
                 "terminal_observation": last[i].copy(),
                 "TimeLimit.truncated": bool(truncated[i] and not terminated[i]),
-                "episode": {"r": float(self.returns[i]), "l": int(envs.batch.outcome[SAMPLE, i]), "t": elapsed},
+                "episode": {"r": float(self.returns[i]), "l": int(envs.batch.outcome[SAMPLE_COUNT, i]), "t": elapsed},
             }
             self.returns[i] = 0.0
         envs.restart()

@@ -16,7 +16,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.env.arguments import ArmLike, EnvArguments, find_prior, make_setup
 from flexarm_env.env.batch import Batch
 from flexarm_env.env.flexarm import spaces_of
-from flexarm_env.env.layout import REWARD, SAMPLE, TERMINATED
+from flexarm_env.env.layout import REWARD, SAMPLE_COUNT, TERMINATED
 from flexarm_env.env.task_envs import refuse_task
 from flexarm_env.errors import InputError
 from flexarm_env.tasks import TASKS, Task
@@ -169,7 +169,7 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         batch.step()
         rewards = batch.outcome[REWARD].copy()
         terminated = batch.outcome[TERMINATED] > 0.0
-        truncated = batch.outcome[SAMPLE] >= self.max_episode_steps
+        truncated = batch.outcome[SAMPLE_COUNT] >= self.max_episode_steps
         self.over = terminated | truncated
         return rewards, terminated, truncated
 

@@ -60,8 +60,8 @@ class TrainingReward:
 
     def _strain(self) -> Floats:
         """Look up the base strain without noise (arms,) [V]; zeros for an arm without that gage."""
-        exact = self.envs.batch.exact_readings
-        return np.zeros(len(exact)) if self.gage is None else exact[:, self.gage].copy()
+        noiseless = self.envs.batch.noiseless_readings
+        return np.zeros(len(noiseless)) if self.gage is None else noiseless[:, self.gage].copy()
 
 
 def _share(size: Floats, scale: float, whole: float) -> Floats:

@@ -13,6 +13,7 @@ from flexarm_env.env.setup import Setup
 from flexarm_env.env.shares import LINE
 from flexarm_env.plant import batch as plant_at
 from flexarm_env.plant.plant import Plant
+from flexarm_env.plant.truth import TRUTH_SIZE
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -27,7 +28,7 @@ class Arena:
     Attributes:
         numbers: the common array.
         views: of each quantity in it, by name.
-        starts: place of each quantity's first number, by name.
+        starts: offset of each quantity's first number, by name.
     """
 
     def __init__(self, shapes: Mapping[str, tuple[int, ...]]) -> None:
@@ -58,10 +59,10 @@ def arena_of(setup: Setup, plant: Plant, sensors: Floats, count: int, threads: i
             "sensors": sensors.shape,
             "outcome": (at.TERMS + terms, count + LINE - count % LINE),  # multiples of 512 would evict each other from the cache
             "own": (count, at.COLUMNS),
-            "exact": (count, signals + plant_at.TRUTH),
+            "noiseless": (count, signals + TRUTH_SIZE),
             "requested": (count,),
             "applied": (count,),
-            "pushes": (count,),
+            "tap_commands": (count,),
             "sensor_output": (count, signals),
             "history": (count, depth, signals),
             "constants": (count if setup.variation.ranges else 1, plant.constants.size),
@@ -71,30 +72,30 @@ def arena_of(setup: Setup, plant: Plant, sensors: Floats, count: int, threads: i
     )
 
 
-def places_of(arena: Arena) -> Indices:
-    """Tabulate the environment's places in the arena, see layout."""
-    views, starts, places = arena.views, arena.starts, np.zeros(at.PLACES, dtype=np.int64)
-    places[at.AT_SETTINGS], places[at.AT_SENSORS], places[at.AT_OWN] = starts["settings"], starts["sensors"], starts["own"]
-    places[at.AT_EXACT], places[at.EXACT_EACH] = starts["exact"], views["exact"].shape[1]
-    places[at.AT_OUTCOME], places[at.ROW_EACH] = starts["outcome"], views["outcome"].shape[1]
-    places[at.AT_REQUESTED], places[at.AT_PUSHES] = starts["requested"], starts["pushes"]
-    places[at.AT_HISTORY], places[at.AT_SENSOR_OUTPUT] = starts["history"], starts["sensor_output"]
-    _, places[at.DEPTH], places[at.SIGNALS] = views["history"].shape
-    return places
+def env_offsets_of(arena: Arena) -> Indices:
+    """Tabulate the environment's offsets in the arena, see layout."""
+    views, starts, offsets = arena.views, arena.starts, np.zeros(at.OFFSETS, dtype=np.int64)
+    offsets[at.AT_SETTINGS], offsets[at.AT_SENSORS], offsets[at.AT_OWN] = starts["settings"], starts["sensors"], starts["own"]
+    offsets[at.AT_NOISELESS], offsets[at.NOISELESS_EACH] = starts["noiseless"], views["noiseless"].shape[1]
+    offsets[at.AT_OUTCOME], offsets[at.ROW_EACH] = starts["outcome"], views["outcome"].shape[1]
+    offsets[at.AT_REQUESTED], offsets[at.AT_TAP_COMMANDS] = starts["requested"], starts["tap_commands"]
+    offsets[at.AT_HISTORY], offsets[at.AT_SENSOR_OUTPUT] = starts["history"], starts["sensor_output"]
+    _, offsets[at.DEPTH], offsets[at.SIGNALS] = views["history"].shape
+    return offsets
 
 
-def physics_of(arena: Arena, delayed: bool) -> Indices:
-    """Tabulate the plant's places in the arena, see plant.batch.
+def plant_offsets_of(arena: Arena, delayed: bool) -> Indices:
+    """Tabulate the plant's offsets in the arena, see plant.batch.
 
     Args:
         arena: of the batch.
         delayed: whether commands are applied whole samples after they are requested.
     """
-    views, starts, places = arena.views, arena.starts, np.zeros(plant_at.SCRATCH_EACH + 1, dtype=np.int64)
+    views, starts, offsets = arena.views, arena.starts, np.zeros(plant_at.SCRATCH_EACH + 1, dtype=np.int64)
     arms, size = views["constants"].shape
-    places[plant_at.AT_CONSTANTS], places[plant_at.CONSTANTS_EACH] = starts["constants"], size if arms > 1 else 0
-    places[plant_at.AT_STATES], places[plant_at.STATE_EACH] = starts["states"], views["states"].shape[1]
-    places[plant_at.AT_COMMANDS] = starts["applied" if delayed else "requested"]
-    places[plant_at.AT_PUSHES], places[plant_at.AT_LOOKS] = starts["pushes"], starts["exact"]
-    places[plant_at.AT_SCRATCH], places[plant_at.SCRATCH_EACH] = starts["scratch"], views["scratch"].shape[1]
-    return places
+    offsets[plant_at.AT_CONSTANTS], offsets[plant_at.CONSTANTS_EACH] = starts["constants"], size if arms > 1 else 0
+    offsets[plant_at.AT_STATES], offsets[plant_at.STATE_EACH] = starts["states"], views["states"].shape[1]
+    offsets[plant_at.AT_COMMANDS] = starts["applied" if delayed else "requested"]
+    offsets[plant_at.AT_TAP_COMMANDS], offsets[plant_at.AT_NOISELESS] = starts["tap_commands"], starts["noiseless"]
+    offsets[plant_at.AT_SCRATCH], offsets[plant_at.SCRATCH_EACH] = starts["scratch"], views["scratch"].shape[1]
+    return offsets

@@ -9,16 +9,16 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.env import layout as at
-from flexarm_env.env.arena import arena_of, physics_of, places_of
+from flexarm_env.env.arena import arena_of, env_offsets_of, plant_offsets_of
 from flexarm_env.env.compose import environment_kernel
 from flexarm_env.env.draws import key_of, uniform
-from flexarm_env.env.setup import Setup, check_layouts, per_torque_of, sensors_of, settings_of
+from flexarm_env.env.setup import Setup, check_layouts, command_per_torque_of, sensors_of, settings_of
 from flexarm_env.env.shares import Arms
 from flexarm_env.env.threads import Crew
 from flexarm_env.env.variation import hash_of
 from flexarm_env.errors import InputError
-from flexarm_env.plant.batch import TRUTH
 from flexarm_env.plant.plant import Plant
+from flexarm_env.plant.truth import TRUTH_ANGLE, TRUTH_SIZE
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -38,7 +38,7 @@ class Batch:
         info_rows: rows of the outcome that an info reports, by name.
         info_of: makes the info of one arm from its column of the outcome, as a list.
         requested: commands of the next step (arms,) [A or V].
-        exact_readings: readings without noise, delay and steps, then the plant's truth (arms, signals + TRUTH), SI units.
+        noiseless_readings: without noise, delay and steps, then the plant's truth (arms, signals + TRUTH_SIZE), SI units.
         sensor_output: last readings (arms, signals), SI units.
         own: numbers of each arm (arms, COLUMNS), see layout.
         states: of the plant (arms, numbers).
@@ -64,18 +64,19 @@ class Batch:
         setup, plant, count, sensors = self.setup, self.plant, self.count, sensors_of(self.setup)
         arena = arena_of(setup, plant, sensors, count, threads)
         views = arena.views
-        self.outcome, self.own, self.exact_readings = views["outcome"][:, :count], views["own"], views["exact"]
+        self.outcome, self.own, self.noiseless_readings = views["outcome"][:, :count], views["own"], views["noiseless"]
         self.requested, self.applied, self.sensor_output = views["requested"], views["applied"], views["sensor_output"]
         self.history, self.states, self.constants = views["history"], views["states"], views["constants"]
         views["settings"][:], views["sensors"][:], self.constants[:] = settings_of(setup, self.limit), sensors, plant.constants
-        self.arena, self.places, self.physics = arena.numbers, places_of(arena), physics_of(arena, self.delayed)
-        self.layout, self.keys = plant.layout, np.zeros(count, dtype=np.uint64)
+        self.arena = arena.numbers
+        self.env_offsets, self.plant_offsets = env_offsets_of(arena), plant_offsets_of(arena, self.delayed)
+        self.layout, self.rng_keys = plant.layout, np.zeros(count, dtype=np.uint64)
         self.observations = np.zeros((count, len(sensors) + 1), dtype=np.float32)
         self.first_outcome, self.first_observation = self.outcome[:, 0], self.observations[0]
         self.kernel = kernel = environment_kernel(setup.task.terms)
         self.step_batch = plant.kernel.step_batch
         self.after_step, self.info_rows, self.info_of = kernel.after_step, kernel.INFO_ROWS, kernel.info_of
-        arms = Arms(self.arena, self.layout, self.physics, self.places, self.keys, self.observations)
+        arms = Arms(self.arena, self.layout, self.plant_offsets, self.env_offsets, self.rng_keys, self.observations)
         self.crew = Crew(threads, count, self.step_batch, self.after_step, arms) if threads > 1 else None
 
     def close(self) -> None:
@@ -101,7 +102,7 @@ class Batch:
 
     def _start(self, arm: int, drawn: Arm) -> None:
         setup, own = self.setup, self.own[arm]
-        self.keys[arm] = self._key(arm, "sensors")
+        self.rng_keys[arm] = self._key(arm, "sensors")
         plant = self.plant
         if setup.variation.ranges:
             plant.constants[:] = self.constants[arm]
@@ -109,14 +110,15 @@ class Batch:
             self.first_state = self._run_up(plant)
         self.states[arm] = self.first_state
         self.waiting[:, arm] = 0.0
-        plant.kernel.look_batch(self.arena, plant.layout, self.physics, arm, arm + 1)
-        angle = self.exact_readings[arm, -TRUTH]
+        plant.kernel.write_noiseless(self.arena, plant.layout, self.plant_offsets, arm, arm + 1)
+        angle = self.noiseless_readings[arm, TRUTH_ANGLE - TRUTH_SIZE]
         own[:] = self.outcome[:, arm] = 0.0
-        own[at.LENGTH], own[at.PER_TORQUE] = drawn.constants.get("beam", {}).get("length", 1.0), per_torque_of(drawn)
+        own[at.LENGTH] = drawn.constants.get("beam", {}).get("length", 1.0)
+        own[at.COMMAND_PER_TORQUE] = command_per_torque_of(drawn)
         own[at.FIRST_ANGLE] = angle
         own[at.FIRST_TARGET] = self.outcome[at.TARGET, arm] = angle if setup.task.hold else setup.task.target
-        self.history[arm] = self.sensor_output[arm] = self.exact_readings[arm, :-TRUTH]
-        self.kernel.after_reset(self.arena, self.places, self.keys, self.observations, arm)
+        self.history[arm] = self.sensor_output[arm] = self.noiseless_readings[arm, :-TRUTH_SIZE]
+        self.kernel.after_reset(self.arena, self.env_offsets, self.rng_keys, self.observations, arm)
 
     def _run_up(self, plant: Plant) -> Floats:
         """Compute the state at the start of an episode, after the task's pulse and coast."""
@@ -141,12 +143,12 @@ class Batch:
             self.crew.run(self._step)
 
     def _step(self, first: int, last: int) -> None:
-        self.step_batch(self.arena, self.layout, self.physics, first, last, 0)
-        self.after_step(self.arena, self.places, self.keys, self.observations, first, last)
+        self.step_batch(self.arena, self.layout, self.plant_offsets, first, last, 0)
+        self.after_step(self.arena, self.env_offsets, self.rng_keys, self.observations, first, last)
 
     def request(self, actions: Floats) -> int:
         """Set the commands of the next step to actions (arms,) · limit; return the first arm without a finite action, or -1."""
-        return int(self.kernel.request(actions, self.arena, self.places, self.limit))
+        return int(self.kernel.request(actions, self.arena, self.env_offsets, self.limit))
 
     def info(self) -> dict[str, Floats]:
         """Copy the quantities of an info, by name (arms,): the truth, the target, the command, the reward's terms."""
@@ -158,7 +160,7 @@ class Batch:
         return self.setup.variation.arm(self.setup.arm, self.draws_of(arm))
 
     def draws_of(self, arm: int) -> list[float]:
-        """List the places, from 0 up to 1, in their ranges that the values which vary have in the present episode."""
+        """Return the unit-interval draws of an arm's present episode, one for each range: 0 is its low end, 1 its high one."""
         key = self._key(arm, "arm")
         return [uniform(key, 0, i) for i in range(len(self.setup.variation.ranges))]
 

@@ -15,11 +15,13 @@ import numba
 from flexarm_env.env import layout as at
 from flexarm_env.errors import InputError
 from flexarm_env.generated import generated_module, without_imports
+from flexarm_env.plant import truth
 from flexarm_env.tasks.reward import RewardTerm, Sample
 
 #: The kernel, each file after those that it calls; the terms of the reward come before the last.
-FILES = ("draws.py", "layout.py", "sensing.py")
-LAST = "kernel.py"
+HERE = Path(__file__).parent
+FILES = (Path(truth.__file__), HERE / "draws.py", HERE / "layout.py", HERE / "sensing.py")
+LAST = HERE / "kernel.py"
 #: Rows of the outcome that an info reports, by name; those of the reward's terms follow.
 INFO = {
     "hub_angle": at.HUB_ANGLE,
@@ -48,16 +50,15 @@ def _module(text: str) -> ModuleType:
 
 
 def _source(terms: tuple[RewardTerm, ...]) -> str:
-    here = Path(__file__).parent
     imports = ["import math", "from collections import namedtuple", "import numpy as np", "from numba import njit"]
     sample = f"Sample = namedtuple('Sample', {Sample._fields})"
-    parts = [*imports, sample, *(without_imports(here / file) for file in FILES)]
-    parts += [*map(_term, terms), _write_terms(terms), without_imports(here / LAST), _info_of(terms)]
+    parts = [*imports, sample, *(without_imports(file) for file in FILES)]
+    parts += [*map(_term, terms), _write_terms(terms), without_imports(LAST), _info_of(terms)]
     return "\n\n".join(parts) + "\n"
 
 
 def _write_terms(terms: tuple[RewardTerm, ...]) -> str:
-    """Write the function that reward.write_terms stands for."""
+    """Write the function in the place of placeholder.write_terms: the weighted sum of these terms."""
     lines = [DECORATOR, "def write_terms(a, weights, row, row_each, sample):", "    reward = 0.0"]
     for i, term in enumerate(terms):
         given = ", ".join(f"sample.{quantity}" for quantity in term.quantities)

@@ -31,6 +31,10 @@ def spaces_of(setup: Setup) -> tuple[spaces.Box[Any], spaces.Box[Any]]:
 class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
     """One flexible arm at a task; the classes of the registered tasks, such as SlewEnv, are pages about each.
 
+    An environment built from the class never truncates an episode: wrap it in `gymnasium.wrappers.TimeLimit`, with
+    `setup.samples` steps. `gymnasium.make` adds a limit itself, `max_episode_steps`: the task's steps at 200 Hz, whatever the
+    control rate, unless it is given.
+
     Args:
         task: its name, or a Task.
         arm: name of a shipped arm, path of an arm file, or an Arm: the machine.
@@ -38,6 +42,7 @@ class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
         arguments: prior, randomise, vary, disturb, control_rate, physical: see EnvArguments.
 
     Attributes:
+        setup: task, arm and settings; its `samples` are the steps of an episode at the control rate.
         prior: the model of the arm for controllers.
         title: of the pictures; task and arm by default.
 
@@ -92,6 +97,9 @@ class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
     def step(self, action: NDArray[np.float32]) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Apply the command action · limit for one sample.
 
+        Returns:
+            Observation (signals + 1,), reward, terminated, truncated, which is always False here, and info.
+
         Raises:
             gymnasium.error.ResetNeeded: before the first reset.
             InputError: for an action of another shape, or one that is not a number.
@@ -138,7 +146,9 @@ class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
 
 
 def one_command(action: Any) -> float:
-    """Convert an action (1,) to a share of the limit.
+    """Convert an action (1,) to a share of the limit, clipped to -1 to 1.
+
+    kernel.request clips the actions of many arms; to call it for one number takes longer than these comparisons.
 
     Raises:
         InputError: for another shape or a value that is not a number.

@@ -1,4 +1,4 @@
-"""A sample of many arms beside their physics: disturbances, sensors, target, reward, end.
+"""A sample of many arms beside their physics: taps, sensors, target, reward, end.
 
 `compose` makes one module of this file, those that it calls and the terms of a task's reward, so that its compiled
 code in numba's cache is never out of date. The kernels count no references (_nrt), for the reasons given in plant/compose.py.
@@ -11,9 +11,9 @@ import math
 from numba import njit
 
 from flexarm_env.env.layout import (
-    AT_PUSHES,
     AT_REQUESTED,
     AT_SETTINGS,
+    AT_TAP_COMMANDS,
     COMMAND,
     FIRST_ANGLE,
     FIRST_TARGET,
@@ -25,52 +25,56 @@ from flexarm_env.env.layout import (
     RANGE,
     REWARD,
     ROW_EACH,
-    SAMPLE,
+    SAMPLE_COUNT,
     TARGET,
     TERMINATED,
     TERMS,
-    TRUTH_ROWS,
     WEIGHTS,
     own_of,
     row_of,
     truth_of,
 )
-from flexarm_env.env.reward import write_terms
-from flexarm_env.env.sensing import tap_command, write_observation
+from flexarm_env.env.placeholder import write_terms
+from flexarm_env.env.sensing import draw_tap_command, write_observation
+from flexarm_env.plant.truth import TRUTH_ANGLE, TRUTH_DEFLECTION, TRUTH_LOST, TRUTH_SPEED, TRUTH_STUCK
 from flexarm_env.tasks.reward import Sample
 
 
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
-def after_step(arena, places, keys, observations, first, last):
-    """Reward and observe arms first to last - 1 after their physics, and draw the disturbances of their next sample.
+def after_step(arena, offsets, rng_keys, observations, first, last):
+    """Reward and observe arms first to last - 1 after their physics, and draw the taps of their next sample.
 
     Args:
         arena: all numbers of the arms, one after another.
-        places: of the quantities in the arena, see layout.
-        keys: (arms,) of the episodes.
+        offsets: of the quantities in the arena, see layout.
+        rng_keys: (arms,) of the episodes' draws.
         observations: (arms, signals + 1), to be written.
         first: of the arms.
         last: behind the last of them.
     """
     for arm in range(first, last):
-        write_reward(arena, places, arm)
-        write_truth(arena, places, arm)
-        write_observation(arena, places, keys[arm], observations, arm)
-        arena[places[AT_PUSHES] + arm] = tap_command(arena, places, keys[arm], arm)
+        advance_clock(arena, offsets, arm)
+        move_target(arena, offsets, arm)
+        command_change = write_command(arena, offsets, arm)
+        failed = write_terminated(arena, offsets, arm)
+        write_reward(arena, offsets, arm, command_change, failed)
+        copy_truth_to_outcome(arena, offsets, arm)
+        write_observation(arena, offsets, rng_keys[arm], observations, arm)
+        arena[offsets[AT_TAP_COMMANDS] + arm] = draw_tap_command(arena, offsets, rng_keys[arm], arm)
 
 
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
-def after_reset(arena, places, keys, observations, arm):
-    """Observe an arm at the start of an episode, and draw the disturbances of its first sample."""
-    write_truth(arena, places, arm)
-    write_observation(arena, places, keys[arm], observations, arm)
-    arena[places[AT_PUSHES] + arm] = tap_command(arena, places, keys[arm], arm)
+def after_reset(arena, offsets, rng_keys, observations, arm):
+    """Observe an arm at the start of an episode, and draw the tap of its first sample."""
+    copy_truth_to_outcome(arena, offsets, arm)
+    write_observation(arena, offsets, rng_keys[arm], observations, arm)
+    arena[offsets[AT_TAP_COMMANDS] + arm] = draw_tap_command(arena, offsets, rng_keys[arm], arm)
 
 
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
-def request(actions, arena, places, limit):
+def request(actions, arena, offsets, limit):
     """Write the commands that actions (arms,) request [A or V]; return the first arm whose action is not a number, or -1."""
-    requested = places[AT_REQUESTED]
+    requested = offsets[AT_REQUESTED]
     for arm in range(len(actions)):
         action = actions[arm]
         if not math.isfinite(action):
@@ -80,40 +84,67 @@ def request(actions, arena, places, limit):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def write_truth(a, places, arm):
-    """Copy an arm's truth to the rows of the outcome."""
-    truth, row, row_each = truth_of(places, arm), row_of(places, HUB_ANGLE, arm), places[ROW_EACH]
-    for i in range(TRUTH_ROWS):
+def copy_truth_to_outcome(a, offsets, arm):
+    """Copy an arm's truth, all but whether it is lost, to the rows of the outcome from HUB_ANGLE on."""
+    truth, row, row_each = truth_of(offsets, arm), row_of(offsets, HUB_ANGLE, arm), offsets[ROW_EACH]
+    for i in range(TRUTH_LOST):
         a[row + i * row_each] = a[truth + i]
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def write_reward(a, places, arm):
-    """Move the target of an arm on; write its command, its reward, the reward's terms and whether the episode ends."""
-    settings, own, requested = places[AT_SETTINGS], own_of(places, arm), a[places[AT_REQUESTED] + arm]
-    truth, row, row_each = truth_of(places, arm), row_of(places, 0, arm), places[ROW_EACH]
-    sample, target, command = row + SAMPLE * row_each, row + TARGET * row_each, row + COMMAND * row_each
-    a[sample] += 1.0
-    change, a[command] = requested - a[command], requested
+def advance_clock(a, offsets, arm):
+    """Count an arm's sample. What follows in the sample reads this number: its target, its draws, its time."""
+    a[row_of(offsets, SAMPLE_COUNT, arm)] += 1.0
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
+def move_target(a, offsets, arm):
+    """Change the sign of an arm's target after each half period, where the task has one."""
+    settings, own = offsets[AT_SETTINGS], own_of(offsets, arm)
     if a[settings + HALF_PERIOD] > 0.0:
-        half = math.floor(a[sample] * a[settings + INTERVAL] / a[settings + HALF_PERIOD] + 1e-9)
-        a[target] = a[own + FIRST_TARGET] * (1.0 if half % 2 == 0 else -1.0)
-    angle, speed, tip, stuck, lost = a[truth], a[truth + 1], a[truth + 2], a[truth + 3] > 0.0, a[truth + 4] > 0.0
-    failed = lost or not abs(angle - a[own + FIRST_ANGLE]) <= a[settings + RANGE]
-    if lost:  # not finite: rewarded like a straight arm at rest at the end of its range
+        half = math.floor(a[row_of(offsets, SAMPLE_COUNT, arm)] * a[settings + INTERVAL] / a[settings + HALF_PERIOD] + 1e-9)
+        a[row_of(offsets, TARGET, arm)] = a[own + FIRST_TARGET] * (1.0 if half % 2 == 0 else -1.0)
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
+def write_command(a, offsets, arm):
+    """Write the command that an arm requested to the outcome; return its change from the sample before [A or V]."""
+    command, requested = row_of(offsets, COMMAND, arm), a[offsets[AT_REQUESTED] + arm]
+    change = requested - a[command]
+    a[command] = requested
+    return change
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
+def write_terminated(a, offsets, arm):
+    """Write whether an arm's episode ends, and return it: the hub left its range, or the arm is lost."""
+    own, truth = own_of(offsets, arm), truth_of(offsets, arm)
+    turned = abs(a[truth + TRUTH_ANGLE] - a[own + FIRST_ANGLE])
+    failed = a[truth + TRUTH_LOST] > 0.0 or not turned <= a[offsets[AT_SETTINGS] + RANGE]
+    a[row_of(offsets, TERMINATED, arm)] = 1.0 if failed else 0.0
+    return failed
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
+def write_reward(a, offsets, arm, command_change, failed):
+    """Write an arm's reward and the reward's terms."""
+    settings, own, truth = offsets[AT_SETTINGS], own_of(offsets, arm), truth_of(offsets, arm)
+    angle, speed, tip = a[truth + TRUTH_ANGLE], a[truth + TRUTH_SPEED], a[truth + TRUTH_DEFLECTION]
+    if a[truth + TRUTH_LOST] > 0.0:  # not finite: rewarded like a straight arm at rest at the end of its range
         angle, speed, tip = a[own + FIRST_ANGLE] + a[settings + RANGE], 0.0, 0.0
-    moment = Sample(
+    sample = Sample(
         hub_angle=angle,
         hub_speed=speed,
         tip_deflection=tip,
-        stuck=stuck,
-        target=a[target],
-        command=requested / a[settings + LIMIT],
-        command_change=change / a[settings + LIMIT],
+        stuck=a[truth + TRUTH_STUCK] > 0.0,
+        target=a[row_of(offsets, TARGET, arm)],
+        command=a[row_of(offsets, COMMAND, arm)] / a[settings + LIMIT],
+        command_change=command_change / a[settings + LIMIT],
         start_angle=a[own + FIRST_ANGLE],
         beam_length=a[own + LENGTH],
-        time=a[sample] * a[settings + INTERVAL],
+        time=a[row_of(offsets, SAMPLE_COUNT, arm)] * a[settings + INTERVAL],
         failed=failed,
     )
-    a[row + REWARD * row_each] = write_terms(a, settings + WEIGHTS, row + TERMS * row_each, row_each, moment)
-    a[row + TERMINATED * row_each] = 1.0 if failed else 0.0
+    terms = row_of(offsets, TERMS, arm)
+    # write_terms of the task's own terms, which compose writes in the place of the imported one
+    a[row_of(offsets, REWARD, arm)] = write_terms(a, settings + WEIGHTS, terms, offsets[ROW_EACH], sample)

@@ -1,4 +1,4 @@
-"""Places of all numbers of a batch of arms, which lie in one array: the kernels pay for each array that they are given."""
+"""Offsets of all numbers of a batch of arms, which lie in one array: the kernels pay for each array that they are given."""
 
 from __future__ import annotations
 
@@ -6,61 +6,61 @@ from numba import njit
 
 # --- settings: one number each, for all arms; the weights of the reward's terms come last
 (
-    INTERVAL, HALF_PERIOD, RANGE, LIMIT, TAP_CHANCE, TAP_TORQUE, TAP_SAMPLES, DROP_CHANCE, DROP_SAMPLES, TARGET_SCALE, WEIGHTS,
+    INTERVAL, HALF_PERIOD, RANGE, LIMIT, TAP_CHANCE, LARGEST_TAP_TORQUE, TAP_SAMPLES, DROP_CHANCE, DROP_SAMPLES,
+    TARGET_SCALE, WEIGHTS,
 ) = range(11)  # fmt: skip
 
 # --- columns of each arm's own numbers
-FIRST_TARGET, FIRST_ANGLE, TAP_LEFT, TAP, DROP_LEFT, DROPPED, LENGTH, PER_TORQUE = range(8)
+FIRST_TARGET, FIRST_ANGLE, TAP_LEFT, TAP_TORQUE, DROP_LEFT, DROPPED, LENGTH, COMMAND_PER_TORQUE = range(8)
 COLUMNS = 8
 
-# --- rows of the outcome of a step, one number for each arm; the reward's terms come last
-REWARD, TERMINATED, SAMPLE, HUB_ANGLE, HUB_SPEED, TIP_DEFLECTION, STUCK, TARGET, COMMAND, TERMS = range(10)
-#: Of the plant's truth: angle, speed, deflection, stuck. One more says whether the arm is lost, its numbers no longer finite.
-TRUTH_ROWS = 4
+# --- rows of the outcome of a step, one number for each arm; HUB_ANGLE to STUCK are the truth up to TRUTH_LOST (plant.truth), in
+# its order; the reward's terms come last
+REWARD, TERMINATED, SAMPLE_COUNT, HUB_ANGLE, HUB_SPEED, TIP_DEFLECTION, STUCK, TARGET, COMMAND, TERMS = range(10)
 
 # --- columns of each sensor's numbers
-NOISE, STEP, PER_STEP, LARGEST, PER_SCALE, WHOLE_DELAY, SHARE_OF_DELAY = range(7)
+NOISE, STEP, INVERSE_STEP, LARGEST, INVERSE_SCALE, WHOLE_DELAY, SHARE_OF_DELAY = range(7)
 SENSOR = 7
 
-# --- places: where each quantity begins in the common array, and how far one arm's or row's numbers are from the next
+# --- offsets: where each quantity begins in the common array, and how far one arm's or row's numbers are from the next
 (
-    AT_SETTINGS, AT_SENSORS, AT_OWN, AT_EXACT, EXACT_EACH, AT_REQUESTED, AT_PUSHES, AT_HISTORY, AT_SENSOR_OUTPUT, AT_OUTCOME,
-    ROW_EACH, SIGNALS, DEPTH,
+    AT_SETTINGS, AT_SENSORS, AT_OWN, AT_NOISELESS, NOISELESS_EACH, AT_REQUESTED, AT_TAP_COMMANDS, AT_HISTORY, AT_SENSOR_OUTPUT,
+    AT_OUTCOME, ROW_EACH, SIGNALS, DEPTH,
 ) = range(13)  # fmt: skip
-PLACES = 13
+OFFSETS = 13
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def row_of(places, row, arm):
+def row_of(offsets, row, arm):
     """Locate an arm's number in a row of the outcome."""
-    return places[AT_OUTCOME] + row * places[ROW_EACH] + arm
+    return offsets[AT_OUTCOME] + row * offsets[ROW_EACH] + arm
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def own_of(places, arm):
+def own_of(offsets, arm):
     """Locate an arm's own numbers."""
-    return places[AT_OWN] + arm * COLUMNS
+    return offsets[AT_OWN] + arm * COLUMNS
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def exact_of(places, arm):
+def noiseless_of(offsets, arm):
     """Locate an arm's readings without noise, delay and steps."""
-    return places[AT_EXACT] + arm * places[EXACT_EACH]
+    return offsets[AT_NOISELESS] + arm * offsets[NOISELESS_EACH]
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def truth_of(places, arm):
+def truth_of(offsets, arm):
     """Locate an arm's truth, behind its readings without noise."""
-    return exact_of(places, arm) + places[SIGNALS]
+    return noiseless_of(offsets, arm) + offsets[SIGNALS]
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def output_of(places, arm):
+def output_of(offsets, arm):
     """Locate an arm's last sensor output."""
-    return places[AT_SENSOR_OUTPUT] + arm * places[SIGNALS]
+    return offsets[AT_SENSOR_OUTPUT] + arm * offsets[SIGNALS]
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
-def history_of(places, arm):
+def history_of(offsets, arm):
     """Locate an arm's past readings (depth, signals)."""
-    return places[AT_HISTORY] + arm * places[DEPTH] * places[SIGNALS]
+    return offsets[AT_HISTORY] + arm * offsets[DEPTH] * offsets[SIGNALS]

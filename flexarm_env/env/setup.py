@@ -101,26 +101,27 @@ def sensors_of(setup: Setup) -> Floats:
         late = sensor["delay"] * setup.rate
         whole = math.floor(late + 1e-9)
         step = sensor["resolution"]
-        per_step = 1.0 / step if step else 0.0
-        table[j] = (sensor["noise"], step, per_step, largest[j], 1.0 / scales[j], whole, max(late - whole, 0.0))
+        inverse_step = 1.0 / step if step else 0.0
+        table[j] = (sensor["noise"], step, inverse_step, largest[j], 1.0 / scales[j], whole, max(late - whole, 0.0))
     return table
 
 
-def per_torque_of(arm: Arm) -> float:
+def command_per_torque_of(arm: Arm) -> float:
     """Compute the command that gives 1 Nm on the hub at rest [A/Nm or V/Nm]."""
     drive = arm.constants["drive"]
-    per_torque = 1.0 / (drive["gear_ratio"] * drive["torque_constant"])
-    return per_torque * drive["resistance"] if arm.input == "voltage" else per_torque
+    command_per_torque = 1.0 / (drive["gear_ratio"] * drive["torque_constant"])
+    return command_per_torque * drive["resistance"] if arm.input == "voltage" else command_per_torque
 
 
 def settings_of(setup: Setup, limit: float) -> Floats:
-    """Tabulate the numbers of task, disturbances and reward, in the kernel's order (settings,)."""
-    trouble, rate = setup.disturbance, setup.rate
+    """Tabulate the numbers of task, disturbance and reward, in the kernel's order (settings,)."""
+    disturbance, rate = setup.disturbance, setup.rate
     settings = np.zeros(at.WEIGHTS + len(setup.task.terms))
     settings[at.INTERVAL], settings[at.HALF_PERIOD], settings[at.RANGE] = 1.0 / rate, setup.task.half_period, setup.task.range
     settings[at.LIMIT], settings[at.TARGET_SCALE] = limit, setup.scales()[-1]
-    settings[at.TAP_CHANCE], settings[at.TAP_TORQUE] = trouble.tap_rate / rate, trouble.tap_torque
-    settings[at.TAP_SAMPLES] = max(round(trouble.tap_time * rate), 1)
-    settings[at.DROP_CHANCE], settings[at.DROP_SAMPLES] = trouble.dropout_rate / rate, max(round(trouble.dropout_time * rate), 1)
+    settings[at.TAP_CHANCE], settings[at.LARGEST_TAP_TORQUE] = disturbance.tap_rate / rate, disturbance.tap_torque
+    settings[at.TAP_SAMPLES] = max(round(disturbance.tap_time * rate), 1)
+    settings[at.DROP_CHANCE] = disturbance.dropout_rate / rate
+    settings[at.DROP_SAMPLES] = max(round(disturbance.dropout_time * rate), 1)
     settings[at.WEIGHTS :] = [setup.task.weight(term) for term in setup.task.terms]
     return settings

@@ -36,17 +36,17 @@ class Arms(NamedTuple):
     Attributes:
         arena: all numbers of the arms.
         layout: of the plant's constants, see plant.layout.
-        physics: the plant's places in the arena, see plant.batch.
-        places: the environment's places in the arena, see env.layout.
-        keys: (arms,) of the episodes.
+        plant_offsets: of the plant's quantities in the arena, see plant.batch.
+        env_offsets: of the environment's quantities in the arena, see env.layout.
+        rng_keys: (arms,) of the episodes' draws.
         observations: (arms, signals + 1), to be written.
     """
 
     arena: NDArray[np.float64]
     layout: NDArray[np.int64]
-    physics: NDArray[np.int64]
-    places: NDArray[np.int64]
-    keys: NDArray[np.uint64]
+    plant_offsets: NDArray[np.int64]
+    env_offsets: NDArray[np.int64]
+    rng_keys: NDArray[np.uint64]
     observations: NDArray[np.float32]
 
 
@@ -164,8 +164,8 @@ def work_on_shares(move, observe, arms, pool, bounds, threads, part):
         for i in range(shares):
             share = (last - i) % shares
             if compare_and_swap(pool, first_claim(threads) + share, step - 1, step):
-                move(arms.arena, arms.layout, arms.physics, bounds[share], bounds[share + 1], part)
-                observe(arms.arena, arms.places, arms.keys, arms.observations, bounds[share], bounds[share + 1])
+                move(arms.arena, arms.layout, arms.plant_offsets, bounds[share], bounds[share + 1], part)
+                observe(arms.arena, arms.env_offsets, arms.rng_keys, arms.observations, bounds[share], bounds[share + 1])
                 atomic_add(pool, DONE, 1)
         polls = 0
         while atomic_load(pool, STEP) == step and polls < POLLS:

@@ -47,7 +47,7 @@ class View:
     def draw(self, batch: Batch, state: NDArray[np.float64]) -> NDArray[np.uint8] | None:
         """Draw the arm in a physical state (states,)."""
         outcome = batch.first_outcome.tolist()
-        time = outcome[at.SAMPLE] / self.setup.rate
+        time = outcome[at.SAMPLE_COUNT] / self.setup.rate
         if self.bent is not None:
             self.trace.append((time, float(batch.sensor_output[0, self.signals.index(self.bent)])))
         times, values = np.array(self.trace).reshape(-1, 2).T

@@ -64,7 +64,7 @@ ENTRANCES = (
     "drive_output",
     "control_step",
     "replay",
-    "look_batch",
+    "write_noiseless",
     "step_batch",
 )
 
@@ -85,6 +85,7 @@ FILES = (
     "control_step.py",
     "readings.py",
     "replay.py",
+    "truth.py",
     "batch.py",
 )
 

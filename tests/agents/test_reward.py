@@ -29,13 +29,13 @@ def vibration_costs(frequency: float, amplitude: float) -> np.ndarray:
     """Rewards of 400 samples in which nothing is wrong but the base strain."""
     arm = Arm.load("thesis")
     nothing = {name: np.zeros(1) for name in ("hub_angle", "tip_deflection", "target")}
-    batch = SimpleNamespace(exact_readings=np.zeros((1, 4)), info=lambda: nothing)
+    batch = SimpleNamespace(noiseless_readings=np.zeros((1, 4)), info=lambda: nothing)
     envs = SimpleNamespace(batch=batch, num_envs=1, setup=SimpleNamespace(arm=arm, rate=RATE))
     reward, gage = TrainingReward(RewardOptions(), envs), list(arm.signals).index("strain_base")  # type: ignore[arg-type]
     reward.start(0.0)
     costs = []
     for k in range(1, 401):
-        batch.exact_readings[0, gage] = amplitude * np.sin(2.0 * np.pi * frequency * k / RATE)
+        batch.noiseless_readings[0, gage] = amplitude * np.sin(2.0 * np.pi * frequency * k / RATE)
         costs.append(-reward.sample()[0])
     return np.array(costs[100:])
 

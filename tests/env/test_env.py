@@ -110,7 +110,7 @@ def make(**arguments: object) -> gym.Env:
 def test_a_tap_is_a_torque_on_the_hub_whatever_drive_was_drawn(varied: dict) -> None:
     env = FlexArmEnv("slew", randomise=varied, disturb={"tap_rate": 200.0, "tap_torque": 5.0, "tap_time": 0.005})
     env.reset(seed=3)
-    command, tap = env.batch.arena[env.batch.places[at.AT_PUSHES]], env.batch.own[0, at.TAP]
+    command, tap = env.batch.arena[env.batch.env_offsets[at.AT_TAP_COMMANDS]], env.batch.own[0, at.TAP_TORQUE]
     drive = env.drawn_arm().constants["drive"]
     assert abs(tap) > 0.1
     assert command * drive["gear_ratio"] * drive["torque_constant"] == pytest.approx(tap)
