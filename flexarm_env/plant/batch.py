@@ -7,10 +7,10 @@ from numba import njit
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Numbers, Places
 from flexarm_env.plant.control_step import control_step, drive_output
+from flexarm_env.plant.modes import is_stuck, record
 from flexarm_env.plant.propagate import inlined_dot
 from flexarm_env.plant.readings import measure
 from flexarm_env.plant.replay import is_lost
-from flexarm_env.plant.stick_slip import is_stuck, record
 
 #: Columns of the truth after the readings: hub angle and speed, tip deflection, whether the hub sticks, whether it diverged.
 TRUTH = 5

@@ -11,18 +11,11 @@ from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Numbers
 from flexarm_env.plant.event_free_table import ORDER, PER_BLOCK, StepTable, tested_row
 from flexarm_env.plant.force_quartic import StepScratch, fit_quartic, step_places, variation
+from flexarm_env.plant.forces import apply_laws
+from flexarm_env.plant.friction import preslides
+from flexarm_env.plant.modes import GEAR_OPEN, is_stuck, record
 from flexarm_env.plant.propagate import dot
-from flexarm_env.plant.stick_slip import (
-    GEAR_OPEN,
-    apply_laws,
-    has_friction,
-    is_stuck,
-    load_now,
-    preslides,
-    record,
-    remember_friction,
-    static_budget,
-)
+from flexarm_env.plant.stick_slip import has_friction, load_now, remember_friction, static_budget
 
 #: Speed [rad/s] below which the moment of reversal does not matter to presliding friction.
 QUIET = 1e-4

@@ -9,8 +9,9 @@ from numba import njit
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Blocks, Line, Motion, Numbers, Places, Point, SubstepScratch
 from flexarm_env.plant.crossing import amplitudes, curvature_bound, first_crossing, point_at
+from flexarm_env.plant.modes import GEAR_OPEN, is_stuck, record
 from flexarm_env.plant.propagate import dot
-from flexarm_env.plant.stick_slip import GEAR_OPEN, applied_offset, has_friction, is_stuck, load_now, record, static_budget
+from flexarm_env.plant.stick_slip import applied_offset, has_friction, load_now, static_budget
 from flexarm_env.plant.trial_motion import arrive, copy_size, rate_at_end, start_copy
 
 # events: none, a body stops, a held body breaks away, gears part or meet, overlapping teeth are clear of each other

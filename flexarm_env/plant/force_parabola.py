@@ -8,8 +8,9 @@ from numba import njit
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Blocks, Numbers, Places, Segment, SubstepScratch
+from flexarm_env.plant.forces import apply_laws, evaluate_forces, read_motion
+from flexarm_env.plant.modes import record
 from flexarm_env.plant.propagate import RESPONSE, advance
-from flexarm_env.plant.stick_slip import apply_laws, evaluate_forces, read_motion, record
 
 SWEEPS = 15
 

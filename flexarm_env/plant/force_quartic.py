@@ -14,8 +14,9 @@ from numba import njit
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Numbers, Places
 from flexarm_env.plant.event_free_table import NODES, ORDER, StepTable
+from flexarm_env.plant.forces import apply_laws
+from flexarm_env.plant.modes import record
 from flexarm_env.plant.propagate import dot, inlined_dot
-from flexarm_env.plant.stick_slip import apply_laws, record
 
 #: Coefficients of u to u⁴ from the values at the nodes of a quartic that is 0 at u = 0.
 COEFFICIENTS = np.ascontiguousarray(np.linalg.inv(np.power.outer(NODES, np.arange(1, 5))))

@@ -11,8 +11,11 @@ from flexarm_env.plant.bundles import Arrays, Numbers, Places, Segment
 from flexarm_env.plant.crossing import chord_error
 from flexarm_env.plant.event_free_table import DEPTH, has_step_tables, prepare_step_table, tabulated_step
 from flexarm_env.plant.force_parabola import force_influence
+from flexarm_env.plant.forces import effect_torque
+from flexarm_env.plant.friction import Contact, friction_budget
+from flexarm_env.plant.modes import is_stuck, record
 from flexarm_env.plant.propagate import RESPONSE, respond
-from flexarm_env.plant.stick_slip import Contact, effect_torque, friction_budget, has_friction, is_stuck, record
+from flexarm_env.plant.stick_slip import has_friction
 
 
 @njit

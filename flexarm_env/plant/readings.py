@@ -6,9 +6,10 @@ from numba import njit
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Numbers, Places, Segment
+from flexarm_env.plant.forces import angle_of
 from flexarm_env.plant.laws import sensor_law
+from flexarm_env.plant.modes import record
 from flexarm_env.plant.propagate import inlined_dot
-from flexarm_env.plant.stick_slip import angle_of, record
 
 
 @njit

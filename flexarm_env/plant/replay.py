@@ -9,8 +9,11 @@ from numba import njit
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Gains, Numbers, Places, Samples, Segment
 from flexarm_env.plant.control_step import control_step, drive_output, uneven_step
+from flexarm_env.plant.forces import angle_of
+from flexarm_env.plant.friction import preslides
+from flexarm_env.plant.modes import GEAR_OPEN, is_stuck
 from flexarm_env.plant.readings import measure
-from flexarm_env.plant.stick_slip import GEAR_OPEN, angle_of, decide_stick_or_slip, enter_mode, is_stuck, preslides
+from flexarm_env.plant.stick_slip import decide_stick_or_slip, enter_mode
 
 #: Sum of block coordinates beyond which a replay ends in NaN.
 RUN_AWAY = 1e9

@@ -8,17 +8,10 @@ from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Blocks, Numbers, Places, Segment, SubstepScratch
 from flexarm_env.plant.events import AGAIN, GEARS, NOTHING, Event, next_event
 from flexarm_env.plant.force_parabola import add_forces, constant_forcing, fit_forces, force_influence
+from flexarm_env.plant.forces import evaluate_forces
+from flexarm_env.plant.modes import GEAR_OPEN, is_stuck, record
 from flexarm_env.plant.propagate import RESPONSE, advance, dot, respond
-from flexarm_env.plant.stick_slip import (
-    GEAR_OPEN,
-    decide_stick_or_slip,
-    enter_mode,
-    evaluate_forces,
-    is_stuck,
-    record,
-    remember_friction,
-    to_physical,
-)
+from flexarm_env.plant.stick_slip import decide_stick_or_slip, enter_mode, remember_friction, to_physical
 from flexarm_env.plant.trial_motion import copy_size
 
 #: Time [s] after an event in which no other is searched, doubled with each further one in the same substep, so that a crowd of
