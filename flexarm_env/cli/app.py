@@ -222,8 +222,9 @@ def lab(
     outputs.need_lab()
     model, runs = arguments.Given(recordings or [], arm, columns, effects).read()
     from flexarm_env.lab.server import serve
+    from flexarm_env.lab.session import Session
 
-    serve(model, runs, columns, port, show)
+    serve(lambda: Session(model, columns, effects or (), arm), runs, port, show)
 
 
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
