@@ -84,6 +84,8 @@ def diagnose(
     result = identification.diagnose(model, runs, seed, jobs)
     if next_run is not None and result.next_run is not None:
         write_whole(next_run, result.next_run.as_csv())
+    elif next_run is not None:
+        typer.echo(f"No next run is proposed, so {next_run} is not written.", err=True)
     hand_out("diagnose", arm, runs, seed, json, result.as_json(), tables.diagnosis(result))
     if save is not None:
         result.arm.save(save)
