@@ -26,9 +26,9 @@ def write_truth(d: Numbers, n: Places, s: Numbers, out: Numbers, first: int) -> 
     size, count = 2 * n[at.BLOCKS], n[at.COORDINATES]
     rows = record(n, mode) + n[at.PHYSICAL]
     stuck = is_stuck(mode, 0)
-    out[first] = s[at.HELD_HUB] if stuck else inlined_dot(d, rows, s, at.HEADER, size)
-    out[first + 1] = 0.0 if stuck else inlined_dot(d, rows + count * size, s, at.HEADER, size)
-    out[first + 2] = inlined_dot(d, rows + (count - 2) * size, s, at.HEADER, size) if count > n[at.BODIES] else 0.0
+    out[first] = s[at.HELD_HUB] if stuck else inlined_dot(d, rows, s, at.Z_START, size)
+    out[first + 1] = 0.0 if stuck else inlined_dot(d, rows + count * size, s, at.Z_START, size)
+    out[first + 2] = inlined_dot(d, rows + (count - 2) * size, s, at.Z_START, size) if count > n[at.BODIES] else 0.0
     out[first + 3] = 1.0 if stuck else 0.0
     out[first + 4] = 1.0 if is_lost(n, s) else 0.0
 

@@ -68,7 +68,7 @@ def move_freely(a: Arrays, table: StepTable, places: StepScratch) -> None:
     bodies, drivers, size = n[at.BODIES], n[at.DRIVERS], 2 * n[at.BLOCKS]
     holds = record(n, int(s[at.MODE])) + n[at.HOLDS_ANGLE]
     for i in range(ORDER * 2 * bodies):
-        total = inlined_dot(table.data, table.rows + i * size, s, at.HEADER, size)
+        total = inlined_dot(table.data, table.rows + i * size, s, at.Z_START, size)
         for j in range(drivers):
             total += table.data[table.drives + i * drivers + j] * w[places.inputs + j]
         q = i % (2 * bodies)

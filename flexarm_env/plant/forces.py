@@ -78,7 +78,7 @@ def evaluate_forces(a: Arrays, mode: int, held: int, out: int) -> None:
     n, s, w = a.n, a.s, a.w
     motion = out + n[at.BODIES] + n[at.POINTS]
     if n[at.VARYING]:
-        read_motion(a, mode, Segment(s, at.HEADER), motion)
+        read_motion(a, mode, Segment(s, at.Z_START), motion)
     else:  # no law depends on the motion
         for i in range(2 * n[at.BODIES]):
             w[motion + i] = 0.0

@@ -15,7 +15,7 @@ from flexarm_env.plant.propagate import dot
 @njit
 def has_friction(d: Numbers, n: Places, body: int) -> bool:
     """Whether a body has dry friction at all; without it a body never sticks, and zero speed is no event."""
-    return d[at.HUB_RUBS + body] > 0.0
+    return d[at.HUB_FRICTION_SHARE + body] > 0.0
 
 
 @njit
@@ -40,9 +40,9 @@ def load_now(d: Numbers, n: Places, s: Numbers, mode: int) -> float:
     if not n[at.VARYING] or n[at.BODIES] == 1:
         return gear_load(d, n, s, mode, 0.0, 0.0)
     here, size = record(n, mode), 2 * n[at.BLOCKS]
-    z = Segment(s, at.HEADER)
+    z = Segment(s, at.Z_START)
     windup = angle_of(d, n, s, mode, 1, z) - angle_of(d, n, s, mode, 0, z)
-    rate = dot(d, here + n[at.SPEED] + size, s, at.HEADER, size) - dot(d, here + n[at.SPEED], s, at.HEADER, size)
+    rate = dot(d, here + n[at.SPEED] + size, s, at.Z_START, size) - dot(d, here + n[at.SPEED], s, at.Z_START, size)
     return gear_load(d, n, s, mode, windup, rate)
 
 
@@ -61,8 +61,8 @@ def remember_friction(d: Numbers, n: Places, s: Numbers) -> None:
     if not preslides(n, 0) or is_stuck(mode, 0):
         return
     size, direction = 2 * n[at.BLOCKS], s[at.HUB_DIRECTION]
-    angle = angle_of(d, n, s, mode, 0, Segment(s, at.HEADER))
-    speed = dot(d, record(n, mode) + n[at.SPEED], s, at.HEADER, size)
+    angle = angle_of(d, n, s, mode, 0, Segment(s, at.Z_START))
+    speed = dot(d, record(n, mode) + n[at.SPEED], s, at.Z_START, size)
     load = load_now(d, n, s, mode)
     dry = friction_budget(d, n, 0, Contact(direction, max(speed * direction, 0.0), angle, s[at.TIME], load, False))
     friction = presliding_friction(d, n, s, angle, dry)
@@ -74,7 +74,7 @@ def to_physical(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, out: i
     """Write [q, q̇, extra] to w at `out`."""
     here, size = record(n, mode), 2 * n[at.BLOCKS]
     for i in range(n[at.STATES]):
-        w[out + i] = dot(d, here + n[at.PHYSICAL] + i * size, s, at.HEADER, size)
+        w[out + i] = dot(d, here + n[at.PHYSICAL] + i * size, s, at.Z_START, size)
     for body in range(n[at.BODIES]):
         if is_stuck(mode, body):
             w[out + body] = s[at.HELD_HUB + body]
@@ -89,7 +89,7 @@ def enter_mode(d: Numbers, n: Places, s: Numbers, mode: int, w: Numbers, physica
     for body in range(n[at.BODIES]):
         s[at.HELD_HUB + body] = w[physical + body] if is_stuck(mode, body) else 0.0
     for i in range(2 * n[at.BLOCKS]):
-        s[at.HEADER + i] = dot(d, here + n[at.MODAL] + i * n[at.STATES], w, physical, n[at.STATES])
+        s[at.Z_START + i] = dot(d, here + n[at.MODAL] + i * n[at.STATES], w, physical, n[at.STATES])
 
 
 @njit(forceinline=True)
@@ -101,13 +101,13 @@ def decide_stick_or_slip(a: Arrays, body: int, command: float, physical: int, co
     d, n, s, w = a.d, a.n, a.s, a.w
     mode, bit = int(s[at.MODE]), 1 << body
     evaluate_forces(a, mode, mode | bit, coefficients)
-    push = dot(d, record(n, mode) + n[at.HOLD] + body * 2 * n[at.BLOCKS], s, at.HEADER, 2 * n[at.BLOCKS])
+    push = dot(d, record(n, mode) + n[at.HOLD] + body * 2 * n[at.BLOCKS], s, at.Z_START, 2 * n[at.BLOCKS])
     push += applied_offset(d, n, s, body, command, w, coefficients, 0)
     if preslides(n, body):
         s[at.HUB_DIRECTION] = 1.0 if push >= s[at.KNOWN_FRICTION] else -1.0
         return
     direction = 1.0 if push >= 0.0 else -1.0
-    angle = angle_of(d, n, s, mode, body, Segment(s, at.HEADER))
+    angle = angle_of(d, n, s, mode, body, Segment(s, at.Z_START))
     turns = abs(push) > static_budget(d, n, s, body, direction, angle, load_now(d, n, s, mode)) or not has_friction(d, n, body)
     if turns:
         s[at.HUB_DIRECTION + body] = direction

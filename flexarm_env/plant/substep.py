@@ -70,7 +70,7 @@ def oppose_motion(d: Numbers, n: Places, s: Numbers, mode: int) -> None:
     size = 2 * n[at.BLOCKS]
     for body in range(n[at.BODIES]):
         if not is_stuck(mode, body):
-            speed = dot(d, record(n, mode) + n[at.SPEED] + body * size, s, at.HEADER, size)
+            speed = dot(d, record(n, mode) + n[at.SPEED] + body * size, s, at.Z_START, size)
             if speed * s[at.HUB_DIRECTION + body] < 0.0:
                 s[at.HUB_DIRECTION + body] *= -1.0
 
@@ -115,13 +115,13 @@ def substep(a: Arrays, command: float, t: float, slot: int) -> None:
         table = find_forces(a, command, left, slot if blind == 0.0 else UNTABULATED, places)
         here = record(n, int(s[at.MODE]))
         blocks = Blocks(here + n[at.C0], here + n[at.C1], n[at.BLOCKS], n[at.VARYING])
-        advance(d, blocks, table, Segment(s, at.HEADER), w, places.force, places.trial)
+        advance(d, blocks, table, Segment(s, at.Z_START), w, places.force, places.trial)
         event = next_event(a, command, places, min(blind, left), left)
         nothing = event.kind == NOTHING
         when = left if nothing else event.time
         if when > 0.0:
             for i in range(2 * n[at.BLOCKS]):
-                s[at.HEADER + i] = w[(places.trial if nothing else places.found) + i]
+                s[at.Z_START + i] = w[(places.trial if nothing else places.found) + i]
             s[at.TIME] += when
         remember_friction(d, n, s)
         if nothing:
