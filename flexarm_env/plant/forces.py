@@ -64,7 +64,7 @@ def apply_laws(a: Arrays, mode: int, time: float, motion: int, out: int) -> None
         for j in range(n[place]):
             total += drag_law(n[place + 1 + 2 * j], w[motion + 2 * bodies + point], d, n[place + 2 + 2 * j])
         w[out + bodies + point] = total
-    place = n[at.WEIGHT_LAWS]
+    place = n[at.WEIGHT_LAWS]  # the last point is no place on the beam but the column of weight, so drag there is overwritten
     if n[place] > 0:
         total = 0.0
         for j in range(n[place]):
