@@ -61,6 +61,12 @@ def step_places(n: Places) -> StepScratch:
     return StepScratch(bends, inputs, start, forces, changes, motion, new, values, values + ORDER * bodies)
 
 
+@njit
+def step_scratch(n: Places) -> int:
+    """Count the numbers of scratch of a step without events."""
+    return step_places(n).free + ORDER * 2 * n[at.BODIES]
+
+
 @njit(forceinline=True)
 def move_freely(a: Arrays, table: StepTable, places: StepScratch) -> None:
     """Write each quantity at each node of the motion under constant drivers."""

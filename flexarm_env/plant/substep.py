@@ -21,10 +21,9 @@ UNTABULATED = -1
 
 
 @njit
-def substep_scratch(n: Places) -> int:
-    """Count the numbers of scratch of a substep."""
-    count = n[at.BODIES] + n[at.POINTS]
-    return 26 * n[at.BLOCKS] + copy_size(n[at.BLOCKS]) + n[at.STATES] + (14 + 12 * count) * count + 64
+def influence_size(n: Places) -> int:
+    """Count the numbers of a table of the forces' influence (see force_influence)."""
+    return (2 * n[at.BODIES] + n[at.POINTS]) * 3 * (n[at.BODIES] + n[at.POINTS])
 
 
 @njit(forceinline=True)
@@ -41,8 +40,14 @@ def substep_places(n: Places) -> SubstepScratch:
     found = copy + copy_size(blocks)
     responses = found + size
     influence = responses + 2 * RESPONSE * blocks
-    physical = influence + (12 * count * count if n[at.VARYING] else 0)
+    physical = influence + (2 * influence_size(n) if n[at.VARYING] else 0)
     return SubstepScratch(0, force, coefficients, nodes, motion, sizes, copy, found, responses, influence, physical)
+
+
+@njit
+def substep_scratch(n: Places) -> int:
+    """Count the numbers of scratch of a substep."""
+    return substep_places(n).physical + n[at.STATES]
 
 
 @njit(forceinline=True)
@@ -94,7 +99,7 @@ def find_forces(a: Arrays, command: float, t: float, slot: int, places: SubstepS
         evaluate_forces(a, mode, mode, places.coefficients)
         add_forces(d, n, mode, w, places.coefficients, places.force)
         return end
-    size = (2 * n[at.BODIES] + n[at.POINTS]) * 3 * (n[at.BODIES] + n[at.POINTS])
+    size = influence_size(n)
     shifts = Segment(middle.data, here + n[at.STEP_TABLES] + slot * 2 * size if known else places.influence)
     if not known:
         respond(d, c0, c1, blocks, 0.5 * t, w, middle.first)
