@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from agents.learning.options import InterfaceOptions
 from flexarm_env.arm import Arm
 from flexarm_env.controllers import make_controller
-from flexarm_env.controllers.estimator import Estimator, scalar
+from flexarm_env.controllers.estimator import Estimator, row_dot
 from flexarm_env.controllers.loads import KnownLoads
 from flexarm_env.controllers.lqg import LQG
 from flexarm_env.controllers.payload import PayloadEstimator
@@ -111,7 +111,7 @@ class PolicyInterface:
         model, moving = estimator.model, self.state[:, :-1]
         tip = [name for name in model.names if name.startswith("deflection") and not name.endswith("_rate")][-1]
         rows = {"hub": "hub", "hub_rate": "hub_rate", "tip": tip, "tip_rate": f"{tip}_rate"}
-        found = {name: scalar(model.row(state), moving) for name, state in rows.items()}
+        found = {name: row_dot(model.row(state), moving) for name, state in rows.items()}
         found["hub"] = self.target - found["hub"]
         found["friction"] = self.state[:, -1]
         columns = [squeezed(values, FINE_STATE[name])[:, None] for name, values in found.items()]

@@ -93,6 +93,8 @@ def diagnose(
     result = identification.diagnose(model, runs, seed, jobs)
     if next_run is not None and result.next_run is not None:
         write_whole(next_run, result.next_run.as_csv())
+    elif next_run is not None:
+        typer.echo(f"No next run is proposed, so {next_run} is not written.", err=True)
     hand_out("diagnose", arm, runs, seed, json, result.as_json(), tables.diagnosis(result))
     if save is not None:
         result.arm.save(save)
@@ -231,8 +233,9 @@ def lab(
     outputs.need_lab()
     model, runs = arguments.Given(recordings or [], arm, columns, effects).read()
     from flexarm_env.lab.server import serve
+    from flexarm_env.lab.session import Session
 
-    serve(model, runs, columns, port, show)
+    serve(lambda: Session(model, columns, effects or (), arm), runs, port, show)
 
 
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -81,11 +80,9 @@ class Given:
 
     def command_line(self, name: str, seed: int | None = None) -> dict[str, str]:
         """Write the command line that does this again, for the report."""
-        words = ["flexarm", name, *map(str, self.recordings), "--arm", self.arm]
-        words += ["--columns", str(self.columns)] if self.columns is not None else []
-        words += [word for spec in self.effects or () for word in ("--effects", spec)]
-        words += ["--seed", str(seed)] if seed is not None else []
-        return {"command_line": shlex.join(words)}
+        from flexarm_env.terminal.provenance import command_line
+
+        return {"command_line": command_line(name, self.recordings, self.arm, self.columns, self.effects or (), seed)}
 
 
 def required(recordings: Sequence[Path] | None, command: str) -> Sequence[Path]:

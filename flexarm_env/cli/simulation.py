@@ -45,7 +45,7 @@ def simulate(
     """
     played: str | Recording = source
     if source and source not in EXPERIMENTS and Path(source).exists():
-        found = read_recordings(arm, [Path(source)], columns, measured=False)
+        found = read_recordings(arm, [Path(source)], columns, require_signal=False)
         show_notes(found)
         if len(found) != 1:
             raise InputError(f"{source}: holds {len(found)} recordings; name one")

@@ -92,7 +92,7 @@ class Estimator:
     def reading(self, signal: str) -> Floats:
         """Estimate a sensor's reading without noise and offset (count,)."""
         place = self.model.signals.index(signal)
-        return scalar(self.output[place], self.state) + self._sent * self.direct[place]
+        return row_dot(self.output[place], self.state) + self._sent * self.direct[place]
 
 
 def product(matrix: Floats, vectors: Floats) -> Floats:
@@ -103,7 +103,7 @@ def product(matrix: Floats, vectors: Floats) -> Floats:
     return np.einsum("...ij,...j->...i", matrix, vectors)
 
 
-def scalar(row: Floats, vectors: Floats) -> Floats:
+def row_dot(row: Floats, vectors: Floats) -> Floats:
     """Multiply row (columns,), or one for each (count, columns), by vectors (count, columns): (count,)."""
     return np.einsum("...j,...j->...", row, vectors)
 

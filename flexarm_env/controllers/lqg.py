@@ -7,7 +7,7 @@ from scipy.linalg import solve_discrete_are
 
 from flexarm_env.arm import Arm
 from flexarm_env.controllers.base import Controller, Floats
-from flexarm_env.controllers.estimator import Estimator, scalar
+from flexarm_env.controllers.estimator import Estimator, row_dot
 from flexarm_env.controllers.slow import SlowPart
 from flexarm_env.errors import InputError
 from flexarm_env.thesis_drive import LIMIT
@@ -56,11 +56,11 @@ class LQG(Controller):
 
     def _command(self, seen: Floats) -> Floats:
         state = self.estimator.correct(seen[:, :-1])
-        error = seen[:, -1] - scalar(self._hub, state[:, :-1])
+        error = seen[:, -1] - row_dot(self._hub, state[:, :-1])
         near = np.minimum(np.maximum(error, -self._furthest), self._furthest)
         friction = np.minimum(np.maximum(state[:, -1], -self._most_friction), self._most_friction)
         # K x̂ holds the whole angle: the target, moved to where its error is at most the furthest, takes it off again
-        wanted = self.stiffness * (near + seen[:, -1] - error) - scalar(self.gain, state[:, :-1])
+        wanted = self.stiffness * (near + seen[:, -1] - error) - row_dot(self.gain, state[:, :-1])
         self._integrate(error)
         return wanted + self._integral - friction / self.hub_torque_per_command
 

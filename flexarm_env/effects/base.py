@@ -95,7 +95,7 @@ class Effect:
         return [typical]
 
     @classmethod
-    def size(cls) -> str:
+    def size_parameter(cls) -> str:
         """Name of the parameter that says how strong the effect is."""
         return next((key for key, p in cls.parameters.items() if p.null is not None), next(iter(cls.parameters)))
 
@@ -103,8 +103,3 @@ class Effect:
 def torque_size(meaning: str, typical: float = 0.05, low: float = 0.0) -> Parameter:
     """A torque at the hub whose null is zero."""
     return Parameter("N*m", low, 1e4, typical, null=0.0, meaning=meaning)
-
-
-def finite(value: float) -> bool:
-    """Whether a value is a usable number."""
-    return math.isfinite(value)

@@ -80,7 +80,7 @@ def propose(hypotheses: Mapping[str, Arm], interval: float) -> NextRun | None:
     rate = 1.0 / interval
     best: NextRun | None = None
     for name, command in _candidate_inputs(arms[0], rate):
-        played = Recording.from_arrays(name, np.arange(len(command)) / rate, arms[0].input, command, {}, measured=False)
+        played = Recording.from_arrays(name, np.arange(len(command)) / rate, arms[0].input, command, {}, require_signal=False)
         readings = [_readings(arm, played) for arm in arms]
         if not all(np.isfinite(r).all() for r in readings):
             continue

@@ -37,8 +37,8 @@ def with_payload(arm: Arm, payload: float) -> Arm:
     if payload == 0.0:
         return arm
     effect = next(effect for effect in arm.known.values() if effect.condition == CONDITION)
-    own = arm.effects.get(effect.name, {}).get(effect.size(), 0.0)
-    return arm.with_effect(effect.name, **{effect.size(): own + payload})
+    own = arm.effects.get(effect.name, {}).get(effect.size_parameter(), 0.0)
+    return arm.with_effect(effect.name, **{effect.size_parameter(): own + payload})
 
 
 def plants_by_payload(arm: Arm, payloads: Iterable[float], interval: float) -> dict[float, Plant]:

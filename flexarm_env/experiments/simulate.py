@@ -119,6 +119,7 @@ def _sampling(time: Floats) -> tuple[bool, float]:
     """Tell whether samples are even; return that and the interval [s], free of the rounding of the times."""
     steps = np.diff(time)
     median = float(np.median(steps))
+    # Narrower than in a diagnosis, which takes jitter below what its errors resolve for even: only rounding is left out here.
     even = bool(np.abs(steps - median).max() <= 1e-6 * median)
     return even, float(f"{time[-1] / len(steps) if even else median:.12g}")
 
@@ -127,7 +128,7 @@ def _read(path: str | os.PathLike[str]) -> Recording:
     """Read commands from a file."""
     if isinstance(path, str) and not Path(path).exists() and not Path(path).suffix:
         raise InputError(f"no input '{path}': neither an experiment nor a file{did_you_mean(path, EXPERIMENTS)}")
-    return Recording.read(path, measured=False)
+    return Recording.read(path, require_signal=False)
 
 
 def _noise(arm: Arm, count: int, seed: int, experiment: str) -> Floats:

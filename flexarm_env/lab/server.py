@@ -8,12 +8,11 @@ import logging
 import os
 import socket
 from collections import OrderedDict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from nicegui import app, background_tasks, run, ui
 
-from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 from flexarm_env.lab.guard import Guard
 from flexarm_env.lab.live import Live
@@ -27,13 +26,12 @@ MOST_SESSIONS = 16
 DEMO = Path(__file__).resolve().parent.parent / "demo"
 
 
-def serve(arm: Arm, recordings: Sequence[Recording], columns: Path | None, port: int, show: bool) -> None:
+def serve(start: Callable[[], Session], recordings: Sequence[Recording], port: int, show: bool) -> None:
     """Serve the lab until Ctrl-C.
 
     Args:
-        arm: initial one of every tab.
+        start: makes the session of a tab, without recordings.
         recordings: initial ones of every tab.
-        columns: a column map for uploads.
         port: to listen at; 0 takes a free one.
         show: whether to open a browser.
 
@@ -41,7 +39,7 @@ def serve(arm: Arm, recordings: Sequence[Recording], columns: Path | None, port:
         InputError: if the port is taken, or the recordings do not fit the arm.
     """
     if recordings:
-        Live(arm, recordings)  # refuses unsuitable recordings before the server starts
+        Live(start().base, recordings)  # refuses unsuitable recordings before the server starts
     port = _free(port)
     os.environ.pop("PYTEST_CURRENT_TEST", None)  # with it NiceGUI would take a lab under test for its own
     sessions: OrderedDict[str, Session] = OrderedDict()
@@ -51,7 +49,7 @@ def serve(arm: Arm, recordings: Sequence[Recording], columns: Path | None, port:
         await ui.context.client.connected()
         tab = ui.context.client.tab_id or ui.context.client.id
         if tab not in sessions:
-            sessions[tab] = await run.io_bound(_started, arm, recordings, columns)
+            sessions[tab] = await run.io_bound(_started, start, recordings)
             if len(sessions) > MOST_SESSIONS:
                 sessions.popitem(last=False)[1].stop()
         LabPage(sessions[tab], lambda: Recording.read_all(DEMO))
@@ -87,8 +85,8 @@ async def _announce(port: int) -> None:
     print(f"FlexArm lab at http://{HOST}:{port}/ (Ctrl-C ends it)", flush=True)
 
 
-def _started(arm: Arm, recordings: Sequence[Recording], columns: Path | None) -> Session:
-    session = Session(arm, columns)
+def _started(start: Callable[[], Session], recordings: Sequence[Recording]) -> Session:
+    session = start()
     if recordings:
         session.use(list(recordings))
     return session

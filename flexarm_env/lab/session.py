@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -18,7 +17,7 @@ from flexarm_env.lab.job import DONE, Job, Progress
 from flexarm_env.lab.live import Live
 from flexarm_env.lab.uploads import read_upload
 from flexarm_env.recordings.recording import Recording
-from flexarm_env.terminal.provenance import provenance
+from flexarm_env.terminal.provenance import command_line, provenance
 from flexarm_env.terminal.report import report
 
 SEED, JOBS = 0, 2
@@ -34,6 +33,8 @@ class Session:
         arm: the arm after the last step.
         draft: the simulated arm: that after the last step, with effects and sizes set by hand.
         columns: a column map named on the command line.
+        effects: effects of the user's own named there, as "FILE.py:Name".
+        arm_named: the arm's file or name there; "" for the name of `base`.
         recordings: of the machine.
         live: the prepared recordings; None while there are none.
         steps: name and held-out error over the noise after each step.
@@ -45,6 +46,8 @@ class Session:
 
     base: Arm
     columns: Path | None = None
+    effects: Sequence[str] = ()
+    arm_named: str = ""
     recordings: list[Recording] = field(default_factory=list)
     steps: list[tuple[str, float]] = field(default_factory=list)
     live: Live | None = None
@@ -102,6 +105,7 @@ class Session:
         except InputError:
             self.base = old
             raise
+        self.arm_named = ""
 
     def tick(self, effect: str, on: bool) -> None:
         """Put an effect into the draft, at the size of the last step or its typical one, or remove it.
@@ -186,10 +190,10 @@ class Session:
         recordings, base, diagnosis = self._ready(), self.base, self.diagnosis
         nominal = base if diagnosis is None else diagnosis.nominal
         verb = "compare" if diagnosis is None else "diagnose"
-        line = ["flexarm", verb, *(one.source or one.name for one in recordings), "--arm", nominal.name]
         seed = None if diagnosis is None else SEED
-        made: dict[str, Any] = {"command_line": shlex.join(line + ([] if seed is None else ["--seed", str(seed)]))}
-        made |= provenance("lab", nominal.name, recordings, seed)
+        files = [one.source or one.name for one in recordings]
+        line = command_line(verb, files, self.arm_named or nominal.name, self.columns, self.effects, seed)
+        made = {"command_line": line, **provenance("lab", nominal.name, recordings, seed)}
 
         def work(progress: Progress) -> str:
             progress(0.05, "comparing")

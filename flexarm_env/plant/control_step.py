@@ -10,15 +10,22 @@ from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Numbers, Places
 from flexarm_env.plant.event_free_step import event_free_step
 from flexarm_env.plant.event_free_table import DEPTH, prepare_step_table, step_table, table_size, tabulated_step
+from flexarm_env.plant.force_quartic import step_scratch
 from flexarm_env.plant.laws import drive_law, ramp_law
 from flexarm_env.plant.quiet_step import quiet_step
 from flexarm_env.plant.substep import UNTABULATED, substep, substep_scratch
 
 
 @njit
+def table_place(n: Places) -> int:
+    """Return the place in w of a table for a step of any length, behind the scratch of steps and substeps, which they share."""
+    return max(substep_scratch(n), step_scratch(n))
+
+
+@njit
 def scratch_size(n: Places) -> int:
     """Count the numbers of scratch of the kernel."""
-    return substep_scratch(n) + (table_size(n) if n[at.VARYING] else 0)
+    return table_place(n) + (table_size(n) if n[at.VARYING] else 0)
 
 
 @njit(forceinline=True)
@@ -51,7 +58,7 @@ def halving_steps(a: Arrays, command: float, t: float, slot: int) -> None:
     """Advance the arm by t [s] in event-free steps, halved where a force changes fast or an event may occur, then substeps."""
     d, n, s, w = a.d, a.n, a.s, a.w
     whole, done, level = 1 << DEPTH, 0, 0
-    own, own_mode, own_level = step_table(n, w, substep_scratch(n)), UNTABULATED, 0
+    own, own_mode, own_level = step_table(n, w, table_place(n)), UNTABULATED, 0
     while done < whole:
         mode, part = int(s[at.MODE]), whole >> level
         length = t * 0.5**level

@@ -28,7 +28,7 @@ def amplitudes(m: Motion, t: float) -> None:
     for k in range(blocks):
         i = m.force + 2 * k
         a, b = d[m.blocks.c0 + k], d[m.blocks.c1 + k]
-        p, q = s[at.HEADER + 2 * k], s[at.HEADER + 2 * k + 1]
+        p, q = s[at.Z_START + 2 * k], s[at.Z_START + 2 * k + 1]
         fast = q + w[i]
         slow = w[i + 1] - a * p - b * q
         stretch = math.sqrt(a)

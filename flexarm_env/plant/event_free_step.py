@@ -11,18 +11,11 @@ from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Numbers
 from flexarm_env.plant.event_free_table import ORDER, PER_BLOCK, StepTable, tested_row
 from flexarm_env.plant.force_quartic import StepScratch, fit_quartic, step_places, variation
+from flexarm_env.plant.forces import apply_laws
+from flexarm_env.plant.friction import preslides
+from flexarm_env.plant.modes import GEAR_OPEN, is_stuck, record
 from flexarm_env.plant.propagate import dot
-from flexarm_env.plant.stick_slip import (
-    GEAR_OPEN,
-    apply_laws,
-    has_friction,
-    is_stuck,
-    load_now,
-    preslides,
-    record,
-    remember_friction,
-    static_budget,
-)
+from flexarm_env.plant.stick_slip import has_friction, load_now, remember_friction, static_budget
 
 #: Speed [rad/s] below which the moment of reversal does not matter to presliding friction.
 QUIET = 1e-4
@@ -43,9 +36,9 @@ def start_forces(a: Arrays, places: StepScratch) -> bool:
     mode, bodies, size = int(s[at.MODE]), n[at.BODIES], 2 * n[at.BLOCKS]
     here, start, varying = record(n, mode), places.start, n[at.VARYING] > 0
     for body in range(bodies if varying else 0):
-        w[start + body] = dot(d, here + n[at.ANGLE] + body * size, s, at.HEADER, size)
+        w[start + body] = dot(d, here + n[at.ANGLE] + body * size, s, at.Z_START, size)
         w[start + body] += d[here + n[at.HOLDS_ANGLE] + body] * s[at.HELD_HUB + body]
-        w[start + bodies + body] = dot(d, here + n[at.SPEED] + body * size, s, at.HEADER, size)
+        w[start + bodies + body] = dot(d, here + n[at.SPEED] + body * size, s, at.Z_START, size)
         turns = has_friction(d, n, body) and not is_stuck(mode, body)
         if turns and w[start + bodies + body] * s[at.HUB_DIRECTION + body] <= (-QUIET if preslides(n, body) else 0.0):
             return False
@@ -89,7 +82,7 @@ def move_blocks(a: Arrays, moves: bool, table: StepTable, places: StepScratch) -
         c0, c1 = d[here + n[at.C0] + k], d[here + n[at.C1] + k]
         i = table.responses + PER_BLOCK * k
         c, r, r0 = tab[i], tab[i + 1], tab[i + 2]
-        p, q = s[at.HEADER + 2 * k], s[at.HEADER + 2 * k + 1]
+        p, q = s[at.Z_START + 2 * k], s[at.Z_START + 2 * k + 1]
         x, y = q + f1, f2 - c0 * p - c1 * q
         new_p = p + (r + c1 * r0) * x + r0 * y
         new_q = c * x + r * y - f1
@@ -110,7 +103,7 @@ def chord_of(a: Arrays, row: int, places: StepScratch) -> Chord:
     before, after, bend = 0.0, 0.0, 0.0
     for k in range(a.n[at.BLOCKS]):
         i = 2 * k
-        before += d[place + i] * s[at.HEADER + i] + d[place + i + 1] * s[at.HEADER + i + 1]
+        before += d[place + i] * s[at.Z_START + i] + d[place + i + 1] * s[at.Z_START + i + 1]
         after += d[place + i] * w[i] + d[place + i + 1] * w[i + 1]
         bend += d[weight + k] * w[places.bends + k]
     return Chord(before, after, bend)
@@ -173,7 +166,7 @@ def event_free_step(a: Arrays, command: float, length: float, last: bool, table:
     if d[at.GAP] > 0.0 and not gears_keep_touching(a, moves, table, places):
         return False
     for i in range(2 * n[at.BLOCKS]):
-        s[at.HEADER + i] = w[i]
+        s[at.Z_START + i] = w[i]
     s[at.TIME] += length
     remember_friction(d, n, s)
     return True

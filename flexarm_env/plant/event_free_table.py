@@ -15,8 +15,8 @@ from numba import njit
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Numbers, Places
 from flexarm_env.plant.crossing import chord_error
+from flexarm_env.plant.modes import is_stuck, record
 from flexarm_env.plant.propagate import INVERSE_FACTORIALS, LONG_ARGUMENT
-from flexarm_env.plant.stick_slip import is_stuck, record
 
 #: Lobatto's nodes after the start; the change of force over a step is a polynomial of this order.
 NODES = np.array([0.5 - math.sqrt(3.0 / 28.0), 0.5, 0.5 + math.sqrt(3.0 / 28.0), 1.0])

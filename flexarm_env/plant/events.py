@@ -9,8 +9,9 @@ from numba import njit
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Blocks, Line, Motion, Numbers, Places, Point, SubstepScratch
 from flexarm_env.plant.crossing import amplitudes, curvature_bound, first_crossing, point_at
+from flexarm_env.plant.modes import GEAR_OPEN, is_stuck, record
 from flexarm_env.plant.propagate import dot
-from flexarm_env.plant.stick_slip import GEAR_OPEN, applied_offset, has_friction, is_stuck, load_now, record, static_budget
+from flexarm_env.plant.stick_slip import applied_offset, has_friction, load_now, static_budget
 from flexarm_env.plant.trial_motion import arrive, copy_size, rate_at_end, start_copy
 
 # events: none, a body stops, a held body breaks away, gears part or meet, overlapping teeth are clear of each other
@@ -36,7 +37,7 @@ def crossing_time(m: Motion, line: Line, start: float, end: float, best: float) 
     fourth = dot(d, line.weight, w, m.sizes + m.blocks.number, m.blocks.number)
     value = line.sign * dot(d, line.row, w, m.trial, size) + line.o0 + end * (line.o1 + 0.5 * end * line.o2)
     bend = 0.125 * end * end * bound
-    if value > bend and line.sign * dot(d, line.row, m.s, at.HEADER, size) + line.o0 > bend:
+    if value > bend and line.sign * dot(d, line.row, m.s, at.Z_START, size) + line.o0 > bend:
         return best
     before = point_at(m, line, start)
     if start > 0.0 and before.value <= 0.0:
@@ -80,7 +81,7 @@ def gear_event_time(m: Motion, n: Places, start: float, end: float, side: float,
     edge = play_edge(d, s, mode, side)
     row, weight, sign = here + n[at.MESH], here + n[at.MESH_WEIGHT], side
     if not closed:
-        overlap = side * dot(d, here + n[at.WINDUP], s, at.HEADER, 2 * n[at.BLOCKS]) + edge
+        overlap = side * dot(d, here + n[at.WINDUP], s, at.Z_START, 2 * n[at.BLOCKS]) + edge
         sign = -side
         if overlap <= 0.0:
             row, weight = here + n[at.WINDUP], here + n[at.WINDUP_WEIGHT]
@@ -95,7 +96,7 @@ def overlap_end_time(m: Motion, n: Places, start: float, end: float, side: float
         return best
     here = record(n, mode)
     edge = play_edge(d, s, mode, side)
-    if side * dot(d, here + n[at.WINDUP], s, at.HEADER, 2 * n[at.BLOCKS]) + edge <= 0.0:
+    if side * dot(d, here + n[at.WINDUP], s, at.Z_START, 2 * n[at.BLOCKS]) + edge <= 0.0:
         return best
     return crossing_time(m, Line(here + n[at.WINDUP], here + n[at.WINDUP_WEIGHT], side, edge, 0.0, 0.0), start, end, best)
 
@@ -116,7 +117,7 @@ def breakaway_time(
     for side in range(2):
         push = 1.0 - 2.0 * side
         budget = static_budget(d, n, s, body, push, s[at.HELD_HUB + body], load)
-        if start == 0.0 and push * (o0 + dot(d, row, s, at.HEADER, 2 * blocks)) > budget:
+        if start == 0.0 and push * (o0 + dot(d, row, s, at.Z_START, 2 * blocks)) > budget:
             return -1.0
         line = Line(row, weight, -push, budget - push * o0, -push * o1, -push * o2)
         best = crossing_time(m, line, start, end, best)

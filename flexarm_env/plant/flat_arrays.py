@@ -108,8 +108,8 @@ def _constants(structure: Structure, laws: Sequence[Sequence[ActiveLaw]], interv
     head[..., at.LOAD_BY_COMMAND] = structure.torque_by_command
     two = structure.separate_motor
     shares = np.array([[law.motor_share if two else 0.0 for law in own if law.port == "friction"] for own in laws])
-    head[..., at.HUB_RUBS] = np.sum(1.0 - shares, axis=-1).reshape(lengths.shape[:-1])
-    head[..., at.MOTOR_RUBS] = np.sum(shares, axis=-1).reshape(lengths.shape[:-1])
+    head[..., at.HUB_FRICTION_SHARE] = np.sum(1.0 - shares, axis=-1).reshape(lengths.shape[:-1])
+    head[..., at.MOTOR_FRICTION_SHARE] = np.sum(shares, axis=-1).reshape(lengths.shape[:-1])
     return head
 
 

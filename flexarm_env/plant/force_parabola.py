@@ -8,8 +8,9 @@ from numba import njit
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Blocks, Numbers, Places, Segment, SubstepScratch
+from flexarm_env.plant.forces import apply_laws, evaluate_forces, read_motion
+from flexarm_env.plant.modes import record
 from flexarm_env.plant.propagate import RESPONSE, advance
-from flexarm_env.plant.stick_slip import apply_laws, evaluate_forces, read_motion, record
 
 SWEEPS = 15
 
@@ -122,7 +123,7 @@ def fit_forces(a: Arrays, command: float, t: float, table: Segment, shifts: Segm
     new, free = nodes + 3 * count, motion + quantities
     evaluate_forces(a, mode, mode, nodes)
     constant_forcing(a, command, mode, places.force)
-    steady, state = Blocks(here + n[at.C0], here + n[at.C1], blocks, 0), Segment(s, at.HEADER)
+    steady, state = Blocks(here + n[at.C0], here + n[at.C1], blocks, 0), Segment(s, at.Z_START)
     for half in range(2):
         advance(d, steady, Segment(table.data, table.first + half * RESPONSE * blocks), state, w, places.force, places.trial)
         read_motion(a, mode, Segment(w, places.trial), free + half * quantities)

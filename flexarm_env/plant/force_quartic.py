@@ -14,8 +14,9 @@ from numba import njit
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Numbers, Places
 from flexarm_env.plant.event_free_table import NODES, ORDER, StepTable
+from flexarm_env.plant.forces import apply_laws
+from flexarm_env.plant.modes import record
 from flexarm_env.plant.propagate import dot, inlined_dot
-from flexarm_env.plant.stick_slip import apply_laws, record
 
 #: Coefficients of u to u⁴ from the values at the nodes of a quartic that is 0 at u = 0.
 COEFFICIENTS = np.ascontiguousarray(np.linalg.inv(np.power.outer(NODES, np.arange(1, 5))))
@@ -60,6 +61,12 @@ def step_places(n: Places) -> StepScratch:
     return StepScratch(bends, inputs, start, forces, changes, motion, new, values, values + ORDER * bodies)
 
 
+@njit
+def step_scratch(n: Places) -> int:
+    """Count the numbers of scratch of a step without events."""
+    return step_places(n).free + ORDER * 2 * n[at.BODIES]
+
+
 @njit(forceinline=True)
 def move_freely(a: Arrays, table: StepTable, places: StepScratch) -> None:
     """Write each quantity at each node of the motion under constant drivers."""
@@ -67,7 +74,7 @@ def move_freely(a: Arrays, table: StepTable, places: StepScratch) -> None:
     bodies, drivers, size = n[at.BODIES], n[at.DRIVERS], 2 * n[at.BLOCKS]
     holds = record(n, int(s[at.MODE])) + n[at.HOLDS_ANGLE]
     for i in range(ORDER * 2 * bodies):
-        total = inlined_dot(table.data, table.rows + i * size, s, at.HEADER, size)
+        total = inlined_dot(table.data, table.rows + i * size, s, at.Z_START, size)
         for j in range(drivers):
             total += table.data[table.drives + i * drivers + j] * w[places.inputs + j]
         q = i % (2 * bodies)

@@ -21,16 +21,18 @@ Q_C, Q_S, Q_R0, Q_S_R0, Q_C0, Q_C1, Q_BEND, Q_ROW = range(8)
 Q_COMMAND, Q_HUB, Q_ONE, Q_HELD = 9, 11, 13, 15
 QUIET_SIZE = 17
 
-# --- d: single constants, before the modes' records
-GAP, TOLERANCE, INTERVAL, EARLY_LENGTH, LATE_LENGTH, HUB_RUBS, MOTOR_RUBS, GEAR_RATIO = range(8)
+# --- d: single constants, before the modes' records. *_FRICTION_SHARE is the sum over the friction laws of the shares that act on
+# the body; the motor's follows the hub's, so that HUB_FRICTION_SHARE + body is a body's
+GAP, TOLERANCE, INTERVAL, EARLY_LENGTH, LATE_LENGTH, HUB_FRICTION_SHARE, MOTOR_FRICTION_SHARE, GEAR_RATIO = range(8)
 # torque in the gears per windup, per its rate, and of rigid ones per command
 LOAD_STIFFNESS, LOAD_DAMPING, LOAD_BY_COMMAND = range(8, 11)
 CONSTANTS = 11
 
-# --- s: the state; friction's memory of the hub's angle and its torque there; block coordinates z from HEADER on
+# --- s: the state; friction's memory of the hub's angle and its torque there; block coordinates z from Z_START on. The motor's
+# place follows the hub's, so that HUB_DIRECTION + body and HELD_HUB + body are a body's
 MODE, HUB_DIRECTION, MOTOR_DIRECTION, GEAR_SIDE, HELD_HUB, HELD_MOTOR, TIME, COMMAND = range(8)
 KNOWN_ANGLE, KNOWN_FRICTION = 8, 9
-HEADER = 10
+Z_START = 10
 
 # --- columns of the drivers
 W_COMMAND, W_HUB, W_MOTOR, W_ONE, W_SIDE, W_HELD_HUB, W_HELD_MOTOR = range(7)

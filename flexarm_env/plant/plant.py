@@ -41,7 +41,7 @@ class Plant:
         self.modes = int((n[at.PARAMETERS] - n[at.MODES]) // n[at.STRIDE])
         self.kernel.prepare(d, n)
         self.scratch = np.zeros(self.kernel.scratch_size(n))
-        self.state = np.zeros(at.HEADER + 2 * self.blocks)
+        self.state = np.zeros(at.Z_START + 2 * self.blocks)
 
     def constants_of(self, structures: Sequence[Structure], laws: Sequence[Sequence[ActiveLaw]]) -> Matrix:
         """Return the constants (arms, numbers) of arms that differ from this one in their numbers only.

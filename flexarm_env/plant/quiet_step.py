@@ -11,8 +11,11 @@ from flexarm_env.plant.bundles import Arrays, Numbers, Places, Segment
 from flexarm_env.plant.crossing import chord_error
 from flexarm_env.plant.event_free_table import DEPTH, has_step_tables, prepare_step_table, tabulated_step
 from flexarm_env.plant.force_parabola import force_influence
+from flexarm_env.plant.forces import effect_torque
+from flexarm_env.plant.friction import Contact, friction_budget
+from flexarm_env.plant.modes import is_stuck, record
 from flexarm_env.plant.propagate import RESPONSE, respond
-from flexarm_env.plant.stick_slip import Contact, effect_torque, friction_budget, has_friction, is_stuck, record
+from flexarm_env.plant.stick_slip import has_friction
 
 
 @njit
@@ -102,7 +105,7 @@ def quiet_step(a: Arrays, command: float, length: float, slot: int) -> bool:
             f1 + (d[place + at.Q_ONE] + d[place + at.Q_HELD] * held),
             f2 + (d[place + at.Q_ONE + 1] + d[place + at.Q_HELD + 1] * held),
         )
-        p, q = s[at.HEADER + 2 * k], s[at.HEADER + 2 * k + 1]
+        p, q = s[at.Z_START + 2 * k], s[at.Z_START + 2 * k + 1]
         c0, u, v = d[place + at.Q_C0], d[place + at.Q_ROW], d[place + at.Q_ROW + 1]
         x, y = q + f1, f2 - c0 * p - d[place + at.Q_C1] * q
         new_p = p + d[place + at.Q_S_R0] * x + d[place + at.Q_R0] * y
@@ -115,6 +118,6 @@ def quiet_step(a: Arrays, command: float, length: float, slot: int) -> bool:
     if min(before, after) - bend <= low or max(before, after) + bend >= high:
         return False
     for i in range(2 * n[at.BLOCKS]):
-        s[at.HEADER + i] = w[i]
+        s[at.Z_START + i] = w[i]
     s[at.TIME] += length
     return True

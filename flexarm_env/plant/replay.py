@@ -9,8 +9,11 @@ from numba import njit
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Gains, Numbers, Places, Samples, Segment
 from flexarm_env.plant.control_step import control_step, drive_output, uneven_step
+from flexarm_env.plant.forces import angle_of
+from flexarm_env.plant.friction import preslides
+from flexarm_env.plant.modes import GEAR_OPEN, is_stuck
 from flexarm_env.plant.readings import measure
-from flexarm_env.plant.stick_slip import GEAR_OPEN, angle_of, decide_stick_or_slip, enter_mode, is_stuck, preslides
+from flexarm_env.plant.stick_slip import decide_stick_or_slip, enter_mode
 
 #: Sum of block coordinates beyond which a replay ends in NaN.
 RUN_AWAY = 1e9
@@ -53,12 +56,12 @@ def feed_back(
     for j in range(n[at.SIGNALS]):
         error = measured[k, j] - readings[k * n[at.SIGNALS] + j]
         for i in range(size):
-            s[at.HEADER + i] += gains[mode, i, j] * error
+            s[at.Z_START + i] += gains[mode, i, j] * error
         for body in range(n[at.BODIES]):
             if is_stuck(mode, body):
                 s[at.HELD_HUB + body] += gains[mode, size + body, j] * error
     if preslides(n, 0):  # friction does not build up against a correction
-        s[at.KNOWN_ANGLE] = angle_of(d, n, s, mode, 0, Segment(s, at.HEADER))
+        s[at.KNOWN_ANGLE] = angle_of(d, n, s, mode, 0, Segment(s, at.Z_START))
 
 
 @njit(forceinline=True)
@@ -66,7 +69,7 @@ def is_lost(n: Places, s: Numbers) -> bool:
     """Whether the state has diverged: by feedback gains that do not suit the arm, or by unreasonable values."""
     total = 0.0
     for i in range(2 * n[at.BLOCKS]):
-        total += abs(s[at.HEADER + i])
+        total += abs(s[at.Z_START + i])
     return not total < RUN_AWAY
 
 

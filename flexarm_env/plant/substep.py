@@ -8,17 +8,10 @@ from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Blocks, Numbers, Places, Segment, SubstepScratch
 from flexarm_env.plant.events import AGAIN, GEARS, NOTHING, Event, next_event
 from flexarm_env.plant.force_parabola import add_forces, constant_forcing, fit_forces, force_influence
+from flexarm_env.plant.forces import evaluate_forces
+from flexarm_env.plant.modes import GEAR_OPEN, is_stuck, record
 from flexarm_env.plant.propagate import RESPONSE, advance, dot, respond
-from flexarm_env.plant.stick_slip import (
-    GEAR_OPEN,
-    decide_stick_or_slip,
-    enter_mode,
-    evaluate_forces,
-    is_stuck,
-    record,
-    remember_friction,
-    to_physical,
-)
+from flexarm_env.plant.stick_slip import decide_stick_or_slip, enter_mode, remember_friction, to_physical
 from flexarm_env.plant.trial_motion import copy_size
 
 #: Time [s] after an event in which no other is searched, doubled with each further one in the same substep, so that a crowd of
@@ -28,10 +21,9 @@ UNTABULATED = -1
 
 
 @njit
-def substep_scratch(n: Places) -> int:
-    """Count the numbers of scratch of a substep."""
-    count = n[at.BODIES] + n[at.POINTS]
-    return 26 * n[at.BLOCKS] + copy_size(n[at.BLOCKS]) + n[at.STATES] + (14 + 12 * count) * count + 64
+def influence_size(n: Places) -> int:
+    """Count the numbers of a table of the forces' influence (see force_influence)."""
+    return (2 * n[at.BODIES] + n[at.POINTS]) * 3 * (n[at.BODIES] + n[at.POINTS])
 
 
 @njit(forceinline=True)
@@ -48,8 +40,14 @@ def substep_places(n: Places) -> SubstepScratch:
     found = copy + copy_size(blocks)
     responses = found + size
     influence = responses + 2 * RESPONSE * blocks
-    physical = influence + (12 * count * count if n[at.VARYING] else 0)
+    physical = influence + (2 * influence_size(n) if n[at.VARYING] else 0)
     return SubstepScratch(0, force, coefficients, nodes, motion, sizes, copy, found, responses, influence, physical)
+
+
+@njit
+def substep_scratch(n: Places) -> int:
+    """Count the numbers of scratch of a substep."""
+    return substep_places(n).physical + n[at.STATES]
 
 
 @njit(forceinline=True)
@@ -77,7 +75,7 @@ def oppose_motion(d: Numbers, n: Places, s: Numbers, mode: int) -> None:
     size = 2 * n[at.BLOCKS]
     for body in range(n[at.BODIES]):
         if not is_stuck(mode, body):
-            speed = dot(d, record(n, mode) + n[at.SPEED] + body * size, s, at.HEADER, size)
+            speed = dot(d, record(n, mode) + n[at.SPEED] + body * size, s, at.Z_START, size)
             if speed * s[at.HUB_DIRECTION + body] < 0.0:
                 s[at.HUB_DIRECTION + body] *= -1.0
 
@@ -101,7 +99,7 @@ def find_forces(a: Arrays, command: float, t: float, slot: int, places: SubstepS
         evaluate_forces(a, mode, mode, places.coefficients)
         add_forces(d, n, mode, w, places.coefficients, places.force)
         return end
-    size = (2 * n[at.BODIES] + n[at.POINTS]) * 3 * (n[at.BODIES] + n[at.POINTS])
+    size = influence_size(n)
     shifts = Segment(middle.data, here + n[at.STEP_TABLES] + slot * 2 * size if known else places.influence)
     if not known:
         respond(d, c0, c1, blocks, 0.5 * t, w, middle.first)
@@ -122,13 +120,13 @@ def substep(a: Arrays, command: float, t: float, slot: int) -> None:
         table = find_forces(a, command, left, slot if blind == 0.0 else UNTABULATED, places)
         here = record(n, int(s[at.MODE]))
         blocks = Blocks(here + n[at.C0], here + n[at.C1], n[at.BLOCKS], n[at.VARYING])
-        advance(d, blocks, table, Segment(s, at.HEADER), w, places.force, places.trial)
+        advance(d, blocks, table, Segment(s, at.Z_START), w, places.force, places.trial)
         event = next_event(a, command, places, min(blind, left), left)
         nothing = event.kind == NOTHING
         when = left if nothing else event.time
         if when > 0.0:
             for i in range(2 * n[at.BLOCKS]):
-                s[at.HEADER + i] = w[(places.trial if nothing else places.found) + i]
+                s[at.Z_START + i] = w[(places.trial if nothing else places.found) + i]
             s[at.TIME] += when
         remember_friction(d, n, s)
         if nothing:

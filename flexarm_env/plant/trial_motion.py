@@ -21,7 +21,7 @@ def start_copy(m: Motion) -> None:
     w, size = m.w, 2 * m.blocks.number
     w[m.copy] = 0.0
     for i in range(size):
-        w[m.copy + 1 + i] = m.s[at.HEADER + i]
+        w[m.copy + 1 + i] = m.s[at.Z_START + i]
     for i in range(3 * size):
         w[m.copy + 1 + size + i] = w[m.force + i]
 

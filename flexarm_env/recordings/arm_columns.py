@@ -13,7 +13,7 @@ from flexarm_env.recordings.formats.text import read_header
 _HEAD = 1 << 16
 
 
-def layout_of(path: Path, columns: ColumnMap, measured: bool = True) -> tuple[ColumnMap | None, str]:
+def layout_of(path: Path, columns: ColumnMap, require_signal: bool = True) -> tuple[ColumnMap | None, str]:
     """Choose between an arm's column map and the header of a file.
 
     The map is followed unless the header is FlexArm's own. It is followed there, too, where the file has every column that
@@ -22,7 +22,7 @@ def layout_of(path: Path, columns: ColumnMap, measured: bool = True) -> tuple[Co
     Args:
         path: the file.
         columns: the arm's map.
-        measured: whether the file must hold a signal; commands alone are always read by a header of FlexArm's own.
+        require_signal: whether the file must hold a signal; commands alone are always read by a header of FlexArm's own.
 
     Returns:
         The map, or None to follow the header; and what to note where they differ, else "".
@@ -39,7 +39,7 @@ def layout_of(path: Path, columns: ColumnMap, measured: bool = True) -> tuple[Co
         return None, _note("its own header", "the arm's [columns] differ", differing)
     if by_number or not differing:
         return None, ""
-    return (columns, "") if measured else (None, _note("its own header", "the arm's [columns] differ", differing))
+    return (columns, "") if require_signal else (None, _note("its own header", "the arm's [columns] differ", differing))
 
 
 def _own_header(path: Path) -> tuple[dict[str, Source], list[str]]:

@@ -17,7 +17,7 @@ _SETTINGS: dict[str, type] = {"delimiter": str, "header_prefix": str, "skip_rows
 _PLACES: dict[str, type] = {"column": str, "index": int, "variable": str}
 
 
-def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap, measured: bool = True) -> ColumnMap:
+def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap) -> ColumnMap:
     """Load a column map from a TOML file with a `[columns]` table, or from such a table as a dict.
 
     Each FlexArm name holds `column` (header text), `index` (0-based) or `variable` (MATLAB), with `unit`,
@@ -25,7 +25,6 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
 
     Args:
         columns: the file, or the table.
-        measured: whether it must map a signal.
 
     Raises:
         InputError: for a file that cannot be read, a key that does not exist, or a value that makes no sense.
@@ -44,18 +43,18 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
     if isinstance(columns, ColumnMap):
         return columns
     if isinstance(columns, Mapping):
-        return _column_map(columns, measured)
+        return _column_map(columns)
     path = Path(columns)
     table = read_toml(path).get("columns")
     if not isinstance(table, dict):
         raise InputError(f"{path}: has no [columns] table; put the map under a line [columns]")
     try:
-        return _column_map(table, measured)
+        return _column_map(table)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
 
 
-def _column_map(table: Mapping[str, Any], measured: bool) -> ColumnMap:
+def _column_map(table: Mapping[str, Any]) -> ColumnMap:
     """Check a `[columns]` table."""
     sources: dict[str, Source] = {}
     for key, value in table.items():
@@ -68,7 +67,7 @@ def _column_map(table: Mapping[str, Any], measured: bool) -> ColumnMap:
     settings = {key: _typed(key, table[key], _SETTINGS[key]) for key in _SETTINGS if key in table}
     _check_settings(settings)
     try:
-        check_names(tuple(sources), measured)
+        check_names(tuple(sources))
     except InputError as error:
         raise InputError(f"[columns] {error}") from None
     return ColumnMap(sources, **settings)

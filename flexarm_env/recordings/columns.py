@@ -56,15 +56,14 @@ class ColumnMap:
     decimal: str = "."
 
 
-def check_names(names: Sequence[str], measured: bool = True) -> str:
+def check_names(names: Sequence[str]) -> str:
     """Find the input ("current" or "voltage") of a recording that has these columns.
 
     Args:
         names: of the columns.
-        measured: whether there must be a signal.
 
     Raises:
-        InputError: if time or every signal is missing, or there is not exactly one input.
+        InputError: if time is missing, or there is not exactly one input.
     """
     if "time" not in names:
         raise InputError("has no time column; add 'time [s]'")
@@ -73,8 +72,6 @@ def check_names(names: Sequence[str], measured: bool = True) -> str:
         raise InputError("has neither 'current [A]' nor 'voltage [V]'; add the input of the drive")
     if len(inputs) > 1:
         raise InputError("has both current and voltage; keep the one that the drive was commanded with")
-    if measured and not any(name in names for name in known_sensors()):
-        raise InputError(f"has no measured signal; add at least one of {', '.join(known_sensors())}")
     return inputs[0]
 
 

@@ -43,8 +43,8 @@ class Recording(Shown):
         signals: (n,) each, by name: arm_angle [rad], motor_speed [rad/s], strain_mid [V], strain_base [V],
             tip_deflection [m]; none in commands that are only to be played.
         reference: (n,) [rad], the commanded arm angle, or None.
-        conditions: known conditions in SI, such as payload [kg]; `start` [s] is how long the run had gone on
-            before the first sample.
+        conditions: known conditions in SI. A replay takes up `payload` [kg] alone. The others inform a person, also
+            `start` [s], how long the run had gone on before the first sample: times of effects count from that sample.
         source: the path it was read from; "" if from none.
         sha256: of that file's content; "" if from none.
         notes: one line each on how the file was read, where a person might expect otherwise.
@@ -96,7 +96,7 @@ class Recording(Shown):
         signals: Mapping[str, ArrayLike],
         reference: ArrayLike | None = None,
         conditions: Mapping[str, float] | None = None,
-        measured: bool = True,
+        require_signal: bool = True,
     ) -> Recording:
         """Make a recording of copies of (n,) arrays in SI, checked as a file is.
 
@@ -108,7 +108,7 @@ class Recording(Shown):
             signals: (n,) each, by name, in SI.
             reference: (n,) [rad].
             conditions: known conditions in SI.
-            measured: whether there must be a signal; False takes commands alone, to be played.
+            require_signal: whether there must be a signal; False takes commands alone, to be played.
 
         Raises:
             InputError: for an unknown name, lengths that differ, fewer than two samples, numbers that are not
@@ -132,9 +132,11 @@ class Recording(Shown):
             columns["reference"] = reference
         try:
             arrays = {column: as_vector(column, values) for column, values in columns.items()}
-            return _recording(name, arrays, dict(conditions or {}), (), measured)
+            recording = _recording(name, arrays, dict(conditions or {}), ())
+            _check_signal(recording, require_signal)
         except InputError as error:
             raise InputError(f"{name}: {error}") from None
+        return recording
 
     @classmethod
     def read(
@@ -142,7 +144,7 @@ class Recording(Shown):
         path: PathLike,
         columns: Columns | None = None,
         calibration: Mapping[str, float] | None = None,
-        measured: bool = True,
+        require_signal: bool = True,
     ) -> Recording:
         r"""Read a recording from a CSV file, or by a column map from any text table or .mat file.
 
@@ -150,7 +152,7 @@ class Recording(Shown):
             path: the file. Its time is shifted to start at 0.
             columns: for a foreign file, its `[columns]` table: a TOML file that has one, or a dict.
             calibration: SI per volt for signals that the file has in volts, such as {"arm_angle": 2.0}.
-            measured: whether the file must hold a signal; False takes commands alone, to be played.
+            require_signal: whether the file must hold a signal; False takes commands alone, to be played.
 
         Raises:
             InputError: for anything that is not such a file: one line with file, row and column.
@@ -176,14 +178,15 @@ class Recording(Shown):
             >>> bool((other.signals["arm_angle"] == run.signals["arm_angle"]).all())
             True
         """
-        layout = None if columns is None else load_columns(columns, measured)
+        layout = None if columns is None else load_columns(columns)
         gains = dict(calibration or {})
         check_calibration(gains)
         path = Path(path)
         try:
             content = read_bytes(path)
-            table = format_of(path).table(content, layout, measured)
-            recording = _recording(path.stem, table.in_si(gains), table.conditions, table.lines, measured)
+            table = format_of(path).table(content, layout)
+            recording = _recording(path.stem, table.in_si(gains), table.conditions, table.lines)
+            _check_signal(recording, require_signal, " to its header" if layout is None else " to [columns]")
         except InputError as error:
             raise file_error(path, error) from None
         return replace(recording, source=str(path), sha256=hashlib.sha256(content).hexdigest())
@@ -194,7 +197,7 @@ class Recording(Shown):
         paths: PathLike | Iterable[PathLike],
         columns: Columns | None = None,
         calibration: Mapping[str, float] | None = None,
-        measured: bool = True,
+        require_signal: bool = True,
     ) -> list[Recording]:
         """Read the recordings in files and folders; a folder stands for its CSV and .mat files, sorted by name.
 
@@ -213,8 +216,8 @@ class Recording(Shown):
             ['pulse', 'square']
         """
         files = files_of([paths] if isinstance(paths, (str, os.PathLike)) else paths)
-        layout = None if columns is None else load_columns(columns, measured)
-        recordings = [cls.read(file, layout, calibration, measured) for file in files]
+        layout = None if columns is None else load_columns(columns)
+        recordings = [cls.read(file, layout, calibration, require_signal) for file in files]
         return with_distinct_names(recordings)
 
     def write(self, path: PathLike) -> None:
@@ -278,9 +281,7 @@ class Recording(Shown):
         )
 
 
-def _recording(
-    name: str, arrays: dict[str, Floats], conditions: dict[str, float], lines: Sequence[int], measured: bool = True
-) -> Recording:
+def _recording(name: str, arrays: dict[str, Floats], conditions: dict[str, float], lines: Sequence[int]) -> Recording:
     """Check (n,) arrays in SI, by column name, and make a recording of them.
 
     Args:
@@ -288,9 +289,8 @@ def _recording(
         arrays: by column name.
         conditions: in SI.
         lines: the line of each sample in its file, for messages; empty where there is none.
-        measured: whether there must be a signal.
     """
-    kind = check_names(tuple(arrays), measured)
+    kind = check_names(tuple(arrays))
     lengths = {column: len(values) for column, values in arrays.items()}
     if len(set(lengths.values())) > 1:
         raise InputError(f"lengths differ ({lengths}); give arrays of one length")
@@ -309,6 +309,12 @@ def _recording(
         reference=arrays.get("reference"),
         conditions=conditions,
     )
+
+
+def _check_signal(recording: Recording, required: bool, place: str = "") -> None:
+    """Refuse a recording without a signal where one is required, which must be added at a place."""
+    if required and not recording.signals:
+        raise InputError(f"has no measured signal; add at least one of {', '.join(known_sensors())}{place}")
 
 
 def with_distinct_names(recordings: Sequence[Recording]) -> list[Recording]:

@@ -22,35 +22,35 @@ def known_effects(specs: Sequence[str]) -> Catalogue:
     return catalogue().extended(*map(load_effect, specs)) if specs else catalogue()
 
 
-def read_recordings(arm: Arm, paths: Sequence[Path], columns: Path | None, measured: bool = True) -> list[Recording]:
+def read_recordings(arm: Arm, paths: Sequence[Path], columns: Path | None, require_signal: bool = True) -> list[Recording]:
     """Read the recordings in files and folders by a column map, else by the arm's, else by their headers.
 
     Args:
         arm: that they are of.
         paths: files and folders.
         columns: a column map for all of them; without it the arm's is followed where `layout_of` says so.
-        measured: whether they must hold a signal that the arm measures; commands alone are enough to be played.
+        require_signal: whether they must hold a signal that the arm measures; commands alone are enough to be played.
 
     Raises:
         InputError: for a recording that cannot be read, or that does not fit the arm.
     """
     if columns is not None or not arm.columns:
-        recordings = Recording.read_all(paths, columns, calibration(arm), measured)
+        recordings = Recording.read_all(paths, columns, calibration(arm), require_signal)
     else:
-        recordings = with_distinct_names([_read(arm, file, measured) for file in files_of(paths)])
+        recordings = with_distinct_names([_read(arm, file, require_signal) for file in files_of(paths)])
     for recording in recordings:
-        _check_fits(arm, recording, measured)
+        _check_fits(arm, recording, require_signal)
     return recordings
 
 
-def _read(arm: Arm, file: Path, measured: bool) -> Recording:
+def _read(arm: Arm, file: Path, require_signal: bool) -> Recording:
     """Read one file by the arm's column map or by its header."""
     try:
-        columns = load_columns(arm.columns or {}, measured)
+        columns = load_columns(arm.columns or {})
     except InputError as error:
         raise InputError(f"arm '{arm.name}': {error}") from None
-    layout, note = layout_of(file, columns, measured)
-    recording = Recording.read(file, layout, calibration(arm), measured)
+    layout, note = layout_of(file, columns, require_signal)
+    recording = Recording.read(file, layout, calibration(arm), require_signal)
     return replace(recording, notes=(*recording.notes, note)) if note else recording
 
 
@@ -59,13 +59,13 @@ def calibration(arm: Arm) -> dict[str, float]:
     return {s: table["per_volt"] for s, table in arm.sensors.items() if table["per_volt"] != 0.0 and s in CALIBRATED}
 
 
-def _check_fits(arm: Arm, recording: Recording, measured: bool) -> None:
+def _check_fits(arm: Arm, recording: Recording, require_signal: bool) -> None:
     if recording.input_kind != arm.input:
         raise InputError(
             f"{recording.source}: holds {recording.input_kind}, but arm '{arm.name}' is driven by {arm.input}; "
             "name another arm with --arm"
         )
-    if measured and not set(recording.signals) & set(arm.sensors):
+    if require_signal and not set(recording.signals) & set(arm.sensors):
         raise InputError(
             f"{recording.source}: has {', '.join(recording.signals)}, of which arm '{arm.name}' measures none; "
             "add a [sensors] table to the arm file"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import subprocess
 from collections.abc import Sequence
 from pathlib import Path
@@ -21,6 +22,31 @@ def provenance(command: str, arm: str, recordings: Sequence[Recording], seed: in
         "recordings": [{"name": r.name, "sha256": r.sha256} for r in recordings],
     }
     return made if seed is None else made | {"seed": seed}
+
+
+def command_line(
+    command: str,
+    recordings: Sequence[str | Path],
+    arm: str,
+    columns: Path | None = None,
+    effects: Sequence[str] = (),
+    seed: int | None = None,
+) -> str:
+    """Write the command line that makes a result again.
+
+    Args:
+        command: "compare" or "diagnose".
+        recordings: files and folders.
+        arm: a file, or the name of a shipped arm.
+        columns: a file with a column map.
+        effects: effects of the user's own, as "FILE.py:Name".
+        seed: of the method; None if it has none.
+    """
+    words = ["flexarm", command, *map(str, recordings), "--arm", arm]
+    words += ["--columns", str(columns)] if columns is not None else []
+    words += [word for spec in effects for word in ("--effects", spec)]
+    words += ["--seed", str(seed)] if seed is not None else []
+    return shlex.join(words)
 
 
 def commit() -> str | None:

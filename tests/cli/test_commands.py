@@ -59,6 +59,12 @@ def test_diagnose_writes_what_the_contract_says(flexarm, identify, runs, tmp_pat
     assert sorted(p.name for p in tmp_path.iterdir()) == ["arm.toml", "d.json"]
 
 
+def test_diagnose_says_where_there_is_no_next_run_to_write(flexarm, identify, runs, tmp_path):
+    assert flexarm("diagnose", runs, "--next-run", tmp_path / "next.csv") == 0
+    assert "No next run is proposed" in flexarm.err
+    assert not (tmp_path / "next.csv").exists()
+
+
 def test_json_to_stdout_stands_alone(flexarm, identify, runs):
     for command in (["compare", runs], ["diagnose", runs], ["add", "backlash", runs], ["fit", runs], ["effects"]):
         assert flexarm(*command, "--json", "-") == 0

@@ -25,7 +25,7 @@ def recorded(machine: Arm, large: list[float]) -> Recording:
     command = 1.4 * np.sign(np.sin(2.0 * np.pi * 0.8 * time))
     for start in large:
         command[(time >= start) & (time < start + 0.2)] = 3.5
-    return simulate(machine, Recording.from_arrays("late", time, "current", command, {}, measured=False), seed=2)
+    return simulate(machine, Recording.from_arrays("late", time, "current", command, {}, require_signal=False), seed=2)
 
 
 def shares(arm: Arm, recording: Recording) -> tuple[float, list[str]]:

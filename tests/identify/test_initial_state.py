@@ -64,7 +64,7 @@ def test_an_offset_of_a_gage_is_no_vibration() -> None:
 @pytest.mark.parametrize("offset", [0.05, 0.3])
 def test_an_offset_of_a_gage_is_no_motion_of_an_arm_that_is_driven_at_once(offset: float, signals: list[str]) -> None:
     times = 0.002 * np.arange(1500)
-    push = Recording.from_arrays("push", times, "current", np.where(times < 0.5, -2.0, 1.0), {}, measured=False)
+    push = Recording.from_arrays("push", times, "current", np.where(times < 0.5, -2.0, 1.0), {}, require_signal=False)
     offsets = dict.fromkeys(SIGNALS, 0.0) | {"strain_mid": offset}
     arm = Arm.load("thesis").with_effect("sensor_offset", **offsets)
     nominal, data = prepare(arm, [cut(simulate(arm, push, seed=1), 0.0, signals)])
@@ -81,7 +81,7 @@ def test_no_command_acts_before_the_first_where_the_arm_rests(effect, value) -> 
     arm = Arm.load("thesis").with_effect(effect, **value)
     current = np.concatenate([np.full(150, 2.0), np.zeros(250)])
     times = 0.005 * np.arange(len(current))
-    given = Recording.from_arrays("push", times, "current", current, {}, measured=False)
+    given = Recording.from_arrays("push", times, "current", current, {}, require_signal=False)
     assert error(arm, simulate(arm, given)) < 1.2
 
 
@@ -93,5 +93,5 @@ def test_a_tachometer_alone_shows_that_the_arm_moves_at_the_start() -> None:
 def test_a_start_is_found_however_slow_the_sampling() -> None:
     """A quarter of a second apart, no sample but the first lies in the stretch to which a start is otherwise fitted."""
     arm, times = motor_alone(), 0.25 * np.arange(80)
-    given = Recording.from_arrays("steady", times, "current", np.full(80, 0.4), {}, measured=False)
+    given = Recording.from_arrays("steady", times, "current", np.full(80, 0.4), {}, require_signal=False)
     assert error(arm, cut(simulate(arm, given), 3.0, ["motor_speed"])) < 1.5

@@ -47,7 +47,7 @@ def test_the_next_run_tells_apart_what_no_creeping_shows(arm):
     assert found.separates == ("current_lag", "input_delay")
     limit = arm.constants["drive"]["limit"]
     assert np.abs(found.command).max() <= limit
-    played = Recording.from_arrays("next", found.time, found.input_kind, found.command, {}, measured=False)
+    played = Recording.from_arrays("next", found.time, found.input_kind, found.command, {}, require_signal=False)
     noise = [np.hypot(s["noise"], s["resolution"] / np.sqrt(12.0)) for s in arm.sensors.values()]
     runs = [np.stack(list(simulate(a, played, noise=False).signals.values()), axis=1) / noise for a in (lag, offset)]
     assert np.sqrt(np.mean((runs[0] - runs[1]) ** 2)) == pytest.approx(found.difference)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 import tomllib
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -157,6 +158,18 @@ def test_the_arm_file_is_that_of_the_draft_and_keeps_no_interval_that_does_not_h
     assert Arm.load(tmp_path / "arm.toml").effects["backlash"]["gap"] == 0.05
 
 
+def test_the_report_names_all_options_of_the_command_line(session, monkeypatch):
+    begun = []
+    monkeypatch.setattr("flexarm_env.lab.session.Job", lambda title, work: begun.append(work) or Ended(None, "running"))
+    monkeypatch.setattr(
+        "flexarm_env.lab.session.report", lambda recordings, before, diagnosis, made, progress: made["command_line"]
+    )
+    session.columns, session.effects, session.arm_named = Path("my map.toml"), ["mine.py:Mine"], "arms/mine.toml"
+    session.write_report()
+    line = begun[0](lambda share, text: None)
+    assert line == "flexarm compare pulse --arm arms/mine.toml --columns 'my map.toml' --effects mine.py:Mine"
+
+
 def test_the_next_run_is_a_file_that_can_be_played(session, tmp_path):
     assert session.next_run() is None
     run = NextRun("a chirp", (), 0.0, np.arange(100) * 0.01, np.sin(np.arange(100) * 0.1), "current")
@@ -164,5 +177,5 @@ def test_the_next_run_is_a_file_that_can_be_played(session, tmp_path):
     object.__setattr__(session.diagnosis, "next_run", run)
     path = tmp_path / "next.csv"
     path.write_text(session.next_run())
-    played = Recording.read(path, measured=False)
+    played = Recording.read(path, require_signal=False)
     assert np.allclose(played.command, run.command, rtol=0.0, atol=0.0)

@@ -102,7 +102,6 @@ def changed(**entries: Any) -> dict[str, Any]:
         (changed(time={"column": "t", "unit": "s", "scale": 0}), "not zero"),
         (changed(time={"column": "t", "unit": "s", "scale": "fast"}), "'fast'"),
         (changed(time=None), "no time"),
-        (changed(arm_angle=None), "no measured signal"),
         (changed(voltage={"column": "v", "unit": "V"}), "both current and voltage"),
         (changed(delimiter=";;"), "one character"),
         (changed(delimiter=1), "a text"),
@@ -116,6 +115,14 @@ def test_column_maps_are_checked(table: dict[str, Any], wanted: str) -> None:
         load_columns(table)
     assert wanted in str(caught.value)
     assert len(str(caught.value).splitlines()) == 1
+
+
+def test_a_map_without_a_signal_is_for_commands_alone(tmp_path: Path) -> None:
+    path = save(tmp_path, "t;i\n0;1\n1;2\n")
+    message = refusal(path, columns=changed(arm_angle=None))
+    assert message.startswith("has no measured signal")
+    assert message.endswith("to [columns]")
+    assert Recording.read(path, changed(arm_angle=None), require_signal=False).signals == {}
 
 
 @pytest.mark.parametrize("content", ["", "columns = 3", "[columns", b"\xff\xfe"])

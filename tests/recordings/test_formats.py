@@ -32,7 +32,7 @@ from flexarm_env.recordings.formats.base import Format
 from flexarm_env.recordings.table import Table
 
 
-def read(content, columns, measured):
+def read(content, columns):
     arrays = np.load(io.BytesIO(content))
     return Table({name: arrays[source.place] for name, source in columns.sources.items()}, dict(columns.sources))
 

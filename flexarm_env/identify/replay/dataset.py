@@ -115,6 +115,7 @@ def _run(recording: Recording, measured: Floats, signals: list[str], noise: Floa
     numbers = settings.preparation
     time = recording.time - recording.time[0]
     steps = np.diff(time)
+    # Wider than in a simulation, where only rounding counts as even: tables for one interval make replays fast.
     uneven = np.abs(steps - interval).max() > numbers.uneven * interval
     return Run(
         name=recording.name,

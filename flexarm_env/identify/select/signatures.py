@@ -167,7 +167,7 @@ def _factors(base: Baseline, signature: Signature) -> tuple[float, ...]:
     effect, sizes = base.arm.known[signature.effect], base.numbers.sizes
     if not effect.fitted:
         return (1.0,)
-    return (*sizes, *(-size for size in sizes)) if effect.parameters[effect.size()].low < 0.0 else sizes
+    return (*sizes, *(-size for size in sizes)) if effect.parameters[effect.size_parameter()].low < 0.0 else sizes
 
 
 def _at_size(base: Baseline, signature: Signature, factor: float) -> Signature:

@@ -19,8 +19,8 @@ class Format:
         name: for messages, such as "MATLAB file".
         suffixes: of its files, in lower case, such as (".mat",). A folder stands for the files that have one of them.
         keys: by which entries of a `[columns]` table a column is found in it: "column", "index", "variable".
-        read: makes a table of a file's content, its column map (None if there is none) and whether a signal must be there.
-            Every fault is an InputError, without the file's name.
+        read: makes a table of a file's content and its column map (None if there is none). Every fault is an InputError,
+            without the file's name.
         needs_map: whether only a column map says which column is which.
         also: suffixes that such a file may have, too, but that files in a folder may have for other reasons.
     """
@@ -28,17 +28,16 @@ class Format:
     name: str
     suffixes: tuple[str, ...]
     keys: tuple[str, ...]
-    read: Callable[[bytes, ColumnMap | None, bool], Table]
+    read: Callable[[bytes, ColumnMap | None], Table]
     needs_map: bool = True
     also: tuple[str, ...] = ()
 
-    def table(self, content: bytes, columns: ColumnMap | None, measured: bool) -> Table:
+    def table(self, content: bytes, columns: ColumnMap | None) -> Table:
         """Read the content of a file.
 
         Args:
             content: of the file.
             columns: its column map, if there is one.
-            measured: whether it must hold a signal.
 
         Raises:
             InputError: for a column map that is missing or of another format, and for what the format cannot read.
@@ -49,7 +48,7 @@ class Format:
         for name, source in columns.sources.items() if columns else ():
             if source.key not in self.keys:
                 raise InputError(f"is a {self.name}, but [columns] has '{source.key}' for '{name}'; use {use}")
-        table = self.read(content, columns, measured)
+        table = self.read(content, columns)
         values = {name: as_vector(name, numbers) for name, numbers in table.values.items()}
         if not all(map(len, values.values())):
             raise InputError("has a column without samples; it needs at least two in each")

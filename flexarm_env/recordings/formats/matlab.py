@@ -26,13 +26,12 @@ _MATLAB_NUMBERS = {
 }
 
 
-def read(content: bytes, columns: ColumnMap | None, measured: bool) -> Table:
+def read(content: bytes, columns: ColumnMap | None) -> Table:
     """Read the content of a .mat file (version 7 or older) by its column map.
 
     Args:
         content: of the file.
         columns: its column map, without which no variable is read.
-        measured: whether it must hold a signal, which the map's own check has seen to.
 
     Raises:
         InputError: for version 7.3, a damaged file, or a variable that is absent or no vector of numbers.

@@ -13,13 +13,12 @@ from flexarm_env.recordings.messages import quoted
 from flexarm_env.recordings.table import MOST_LINES, Table
 
 
-def read(content: bytes, columns: ColumnMap | None, measured: bool) -> Table:
+def read(content: bytes, columns: ColumnMap | None) -> Table:
     """Read the content of a text file: one with FlexArm's own header, or any other by a column map.
 
     Args:
         content: of the file.
         columns: its column map, if there is one.
-        measured: whether it must hold a signal.
 
     Raises:
         InputError: naming row (line of the file, counted from 1) and column.
@@ -32,7 +31,7 @@ def read(content: bytes, columns: ColumnMap | None, measured: bool) -> Table:
     first, conditions = _preamble(lines, layout.skip_rows)
     header, body = _header(lines, first, layout)
     sources = native_sources(header) if columns is None else _places(header, layout)
-    check_names(tuple(sources), measured)
+    check_names(tuple(sources))
     numbers = [row for row in range(body, len(lines)) if not is_blank(lines[row], layout.delimiter)]
     if not numbers:
         raise InputError(f"has no samples after row {body}; it needs at least two rows of numbers")
