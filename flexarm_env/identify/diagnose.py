@@ -73,7 +73,7 @@ def diagnose(
 
     trace = Search(calibrator, rules).run(base, searching)
 
-    verdict = rules.verdict(trace.effects, trace.model.score)
+    verdict = rules.verdict(trace.effects, trace.model)
     found = conclude(verdict, trace, nominal_score, arm, recordings, calibrator, seed)
     outlook.at(0.0, "estimating detection limits")
     found = with_outlook(found, trace, calibrator)

@@ -21,22 +21,22 @@ class Criteria(Protocol):
     def measure(self, scores: Sequence[Score]) -> Measure:
         """Choose the excess error by which models with these scores are compared."""
 
-    def is_sufficient(self, found: Score) -> bool:
+    def is_sufficient(self, found: Model) -> bool:
         """Whether an error leaves nothing to explain, so that the search ends."""
 
-    def is_worthwhile(self, without: Score, found: Score, measure: Measure) -> bool:
+    def is_worthwhile(self, without: Model, found: Model, measure: Measure) -> bool:
         """Whether one more effect removes enough of the excess error."""
 
-    def explains(self, found: Score) -> bool:
+    def explains(self, found: Model) -> bool:
         """Whether a model explains the data, so that its effects are named."""
 
-    def is_fully_explained(self, found: Score) -> bool:
+    def is_fully_explained(self, found: Model) -> bool:
         """Whether a model explains the data down to the noise."""
 
-    def is_inadequate(self, best: float, without: Score) -> bool:
+    def is_inadequate(self, best: float, without: Model) -> bool:
         """Whether the best error in windows of several models shows that none of them is the missing effect."""
 
-    def stays_inadequate(self, found: Score, without: Score) -> bool:
+    def stays_inadequate(self, found: Model, without: Model) -> bool:
         """Whether one more effect leaves a model inadequate that was so without it."""
 
     def trusts_constants(self) -> bool:
@@ -48,7 +48,7 @@ class Criteria(Protocol):
     def rank(self, best: Score, measure: Measure, dataset: Dataset) -> Callable[[Model], float]:
         """Choose the key by which rivals of a model with this score are ordered, best first."""
 
-    def can_compare_rivals(self, found: Score) -> bool:
+    def can_compare_rivals(self, found: Model) -> bool:
         """Whether a model comes near enough for rivals of its effects to be compared."""
 
     def leaves_room(self, found: Model) -> bool:
@@ -66,8 +66,8 @@ class Criteria(Protocol):
     def equivalence_level(self, best: Score, measure: Measure) -> float:
         """Compute the largest excess that an effect leaves that is equivalent to the best one."""
 
-    def verdict(self, accepted: Sequence[str], found: Score) -> str:
-        """Reach the verdict of a search from the effects that it accepted and the error that they leave."""
+    def verdict(self, accepted: Sequence[str], found: Model) -> str:
+        """Reach the verdict of a search from the effects that it accepted and the model that has them."""
 
 
 #: Builds criteria from the score of the arm as given, that with its constants calibrated, whether the free run says anything of
@@ -103,47 +103,49 @@ class ThresholdCriteria:
             return lambda s: s.mean_excess
         return lambda s: s.excess
 
-    def is_sufficient(self, found: Score) -> bool:
+    def is_sufficient(self, found: Model) -> bool:
         """Whether the error is near the noise, or the excess below the least that an effect must remove."""
-        return found.windows < self.settings.errors.nothing_left or found.excess < self._least(lambda s: s.excess)
+        score = found.score
+        return score.windows < self.settings.errors.nothing_left or score.excess < self._least(lambda s: s.excess)
 
-    def is_worthwhile(self, without: Score, found: Score, measure: Measure) -> bool:
+    def is_worthwhile(self, without: Model, found: Model, measure: Measure) -> bool:
         """Whether one more effect removes a share of the excess, and more than fits leave that end early."""
-        removed = measure(without) - measure(found)
-        return removed >= max(self.settings.selecting.least_gain * measure(without), self._least(measure))
+        removed = measure(without.score) - measure(found.score)
+        return removed >= max(self.settings.selecting.least_gain * measure(without.score), self._least(measure))
 
-    def explains(self, found: Score) -> bool:
+    def explains(self, found: Model) -> bool:
         """Whether a model leaves nothing to explain, or explains windows and free runs alike, as true effects do.
 
         What imitates another effect often does so in only one of the two, or stops short of the noise.
         """
-        errors, shares = self.settings.errors, self.settings.selecting
-        share = shares.least_total_gain if found.windows > errors.far_off else shares.least_total_gain_near
-        pairs = [(self.refitted.windows, found.windows, errors.explained, share)]
+        score, errors, shares = found.score, self.settings.errors, self.settings.selecting
+        share = shares.least_total_gain if score.windows > errors.far_off else shares.least_total_gain_near
+        pairs = [(self.refitted.windows, score.windows, errors.explained, share)]
         if self.judges_free_run:
-            pairs.append((self.refitted.free_run, found.free_run, errors.free_run_explained, shares.least_total_gain))
+            pairs.append((self.refitted.free_run, score.free_run, errors.free_run_explained, shares.least_total_gain))
         return all(new <= enough or excess(new) <= (1.0 - least) * excess(old) for old, new, enough, least in pairs)
 
-    def is_fully_explained(self, found: Score) -> bool:
+    def is_fully_explained(self, found: Model) -> bool:
         """Whether a model explains the data and leaves hardly more than noise: an imitation does not."""
-        errors, shares = self.settings.errors, self.settings.selecting
-        near = found.windows < errors.explained
-        near = near and found.excess < (1.0 - shares.least_total_gain_near) * self.refitted.excess
-        return (near or found.windows < errors.nothing_left) and self.explains(found)
+        score, errors, shares = found.score, self.settings.errors, self.settings.selecting
+        near = score.windows < errors.explained
+        near = near and score.excess < (1.0 - shares.least_total_gain_near) * self.refitted.excess
+        return (near or score.windows < errors.nothing_left) and self.explains(found)
 
-    def is_inadequate(self, best: float, without: Score) -> bool:
+    def is_inadequate(self, best: float, without: Model) -> bool:
         """Whether the best error in windows is far off, or leaves most of the excess without it."""
         share = 1.0 - self.settings.selecting.least_total_gain
-        return best > self.settings.errors.far_off or excess(best) > share * without.excess
+        return best > self.settings.errors.far_off or excess(best) > share * without.score.excess
 
-    def stays_inadequate(self, found: Score, without: Score) -> bool:
+    def stays_inadequate(self, found: Model, without: Model) -> bool:
         """Whether one more effect leaves the model far off without halving its error both in windows and in the free run.
 
         Something else is missing then, which a flexible enough effect imitates where it was fitted.
         """
         share = 1.0 - self.settings.selecting.least_gain_far_off
-        pairs = ((found.excess, without.excess), (found.free_run_excess, without.free_run_excess))
-        return found.windows > self.settings.errors.far_off and any(new > share * old for new, old in pairs)
+        new, old = found.score, without.score
+        pairs = ((new.excess, old.excess), (new.free_run_excess, old.free_run_excess))
+        return new.windows > self.settings.errors.far_off and any(left > share * before for left, before in pairs)
 
     def trusts_constants(self) -> bool:
         """Whether the calibrated constants leave little of the nominal excess."""
@@ -158,9 +160,9 @@ class ThresholdCriteria:
         near = best.windows < self.settings.errors.close
         return (lambda model: model.bic(dataset)) if near else (lambda model: measure(model.score))
 
-    def can_compare_rivals(self, found: Score) -> bool:
+    def can_compare_rivals(self, found: Model) -> bool:
         """Whether the model is not far off: where so much is missing, no rival can be told from another."""
-        return found.windows <= self.settings.errors.far_off
+        return found.score.windows <= self.settings.errors.far_off
 
     def leaves_room(self, found: Model) -> bool:
         """Whether held-out or fitted errors are above the noise."""
@@ -185,7 +187,7 @@ class ThresholdCriteria:
         left = measure(best)
         return left + self.equivalent_difference(measure(self.refitted) - left, left)
 
-    def verdict(self, accepted: Sequence[str], found: Score) -> str:
+    def verdict(self, accepted: Sequence[str], found: Model) -> str:
         """Name effects that explain the data; else say whether the constants do."""
         if accepted and self.explains(found):
             return "effects"

@@ -9,7 +9,6 @@ import numpy as np
 from flexarm_env.identify.calibrate.calibration import Calibration
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.progress import Progress
-from flexarm_env.identify.replay.error_measure import Score
 from flexarm_env.identify.select.criteria import Criteria
 from flexarm_env.identify.select.fits import fit_models, fit_with_all_constants, fit_with_companion
 from flexarm_env.identify.select.model import Model
@@ -36,7 +35,7 @@ def nearest(calibrator: Calibrator, criteria: Criteria, trials: Sequence[Trial],
     better = [t for t in trials if t.effect and t.cost < level][: numbers.finalists]
     models: list[Model] = []
     for part in ([t for t in better if t.cost <= near], [t for t in better if t.cost > near]):
-        if not any(criteria.is_sufficient(m.score) for m in models):
+        if not any(criteria.is_sufficient(m) for m in models):
             models += fit_models(calibrator, [(t.effect,) for t in part], [t.arm for t in part], progress)
     return models
 
@@ -56,21 +55,21 @@ def others(
     """
     screening, nearer, constants, companions = progress.split(1, 1, 1, 2)
     is_first = not found.effects
-    if none_comes_near(criteria, models, found.score) and not (is_first and not criteria.trusts_constants()):
+    if none_comes_near(criteria, models, found) and not (is_first and not criteria.trusts_constants()):
         unbiased = calibrator.uncalibrated(calibrator.nominal_with_effects_of(found.arm))
         again = nearest(calibrator, criteria, screen(calibrator, [unbiased], screening), nearer)
         models = _best_of_each(criteria, [*models, *again])
-    if none_comes_near(criteria, models, found.score) and is_first:  # a second effect's fits take minutes
+    if none_comes_near(criteria, models, found) and is_first:  # a second effect's fits take minutes
         tried = [m.effects[0] for m in models]
         models = models + fit_with_all_constants(calibrator, found.calibration, trials, tried, constants)
     companion = found.arm.known.pairing
     lacks_companion = bool(companion) and companion not in found.arm.effects
-    if lacks_companion and models and not any(criteria.is_sufficient(m.score) for m in models):
+    if lacks_companion and models and not any(criteria.is_sufficient(m) for m in models):
         models = models + fit_with_companion(calibrator, models, companions)
     return models
 
 
-def none_comes_near(criteria: Criteria, models: Sequence[Model], without: Score) -> bool:
+def none_comes_near(criteria: Criteria, models: Sequence[Model], without: Model) -> bool:
     """Whether all models are inadequate."""
     return criteria.is_inadequate(min((m.score.windows for m in models), default=np.inf), without)
 

@@ -47,14 +47,14 @@ class Search:
         if len(trace.accepted) == 1:
             trace = self.swap(trace, swapping)
         trace = self.drop_useless(trace)
-        if base.score.windows <= self.calibrator.settings.errors.explained or self.criteria.explains(trace.model.score):
+        if base.score.windows <= self.calibrator.settings.errors.explained or self.criteria.explains(trace.model):
             return trace
         longer = self.combine(trace, combining, all_constants=True)
         return self.drop_useless(self.swap(longer, last)) if len(longer.steps) > len(trace.steps) else longer
 
     def add(self, trace: Trace, progress: Progress) -> Trace:
         """Add the effect that removes most, if it is worthwhile; record all that were tried."""
-        sufficient = self.criteria.is_sufficient(trace.model.score)
+        sufficient = self.criteria.is_sufficient(trace.model)
         if sufficient and trace.ranking:
             return trace
         screening, fitting, more = progress.split(6, 1, 3)
@@ -90,7 +90,7 @@ class Search:
         """
         chain = extend_chain(self.calibrator, self.criteria, trace.chain, all_constants, progress) if trace.chain else ()
         trace = replace(trace, chain=chain)
-        if not chain or not self.criteria.is_fully_explained(chain[-1].score):
+        if not chain or not self.criteria.is_fully_explained(chain[-1]):
             return trace
         accepted = [Accepted(m.effects[-1], (m.effects[-1],), m.score) for m in chain[1:]]
         tried = [
@@ -105,7 +105,7 @@ class Search:
         An effect that came in first was compared with its rivals while others were missing still, and a companion with none.
         """
         for place, effect in enumerate(trace.effects):
-            if not self.criteria.can_compare_rivals(trace.model.score):
+            if not self.criteria.can_compare_rivals(trace.model):
                 break
             if trace.model.arm.known[effect].pairs_with_all or self.criteria.leaves_room(trace.model):
                 comparison = compare_rivals(self.calibrator, self.criteria, effect, trace.model, progress)
@@ -123,7 +123,7 @@ class Search:
             calibration = self.calibrator.calibrate(trace.model.arm.without_effect(effect))
             without = judge((), calibration, self.calibrator.dataset)
             measure = self.criteria.measure([without.score, trace.model.score])
-            if not self.criteria.is_worthwhile(without.score, trace.model.score, measure):
+            if not self.criteria.is_worthwhile(without, trace.model, measure):
                 trace = trace.then("drop", without, [a for a in trace.accepted if a.effect != effect])
         return trace
 
@@ -135,7 +135,7 @@ class Search:
         measure = self.criteria.measure([m.score for m in possible])
         best = min(possible, key=lambda m: measure(m.score))
         trace = replace(trace, chain=(*trace.chain, best))
-        if not none_comes_near(self.criteria, models, trace.model.score):
+        if not none_comes_near(self.criteria, models, trace.model):
             return trace
         return self.combine(trace, progress, all_constants=False)
 
@@ -150,11 +150,11 @@ class Search:
 
     def _accept(self, trace: Trace, models: Sequence[Model]) -> Trace:
         """Accept the best model if it removes enough; the simplest of those that remove nearly as much."""
-        measure, before = self.criteria.measure([m.score for m in models]), trace.model.score
+        measure, before = self.criteria.measure([m.score for m in models]), trace.model
         winner = self._simplest(models, measure)
-        if not self.criteria.is_worthwhile(before, winner.score, measure):
+        if not self.criteria.is_worthwhile(before, winner, measure):
             return trace
-        if trace.accepted and self.criteria.stays_inadequate(winner.score, before):
+        if trace.accepted and self.criteria.stays_inadequate(winner, before):
             return trace
         alike = [m for m in models if len(m.effects) == len(winner.effects)]
         trace, rivals = self._rivals(trace, winner, alike, measure)
@@ -172,7 +172,7 @@ class Search:
         if len(winner.effects) == 1 or not singles:
             return winner
         measures: tuple[Measure, ...] = (measure, lambda s: s.excess)  # far off, one model may rest where it should move
-        worthwhile = any(self.criteria.is_worthwhile(singles[0].score, winner.score, m) for m in measures)
+        worthwhile = any(self.criteria.is_worthwhile(singles[0], winner, m) for m in measures)
         return winner if worthwhile else singles[0]
 
     def _rivals(self, trace: Trace, winner: Model, models: Sequence[Model], measure: Measure) -> tuple[Trace, list[Model]]:

@@ -39,9 +39,9 @@ def extend_chain(
         models.append(Model((*last.effects, *step.effects), step.calibration, step.score, step.fitted_score))
         if step.at_bound:
             break
-        if criteria.is_fully_explained(step.score):
+        if criteria.is_fully_explained(models[-1]):
             return tuple(models)
-        if last.effects and not criteria.is_worthwhile(last.score, step.score, lambda s: s.excess):
+        if last.effects and not criteria.is_worthwhile(last, models[-1], lambda s: s.excess):
             break
     return ()
 
