@@ -1,4 +1,4 @@
-"""Find where the model of a flexible arm fails against measurements, and add what it lacks."""
+"""Find where the model of a flexible arm fails against measurements, and add the missing effect."""
 
 from __future__ import annotations
 

@@ -91,7 +91,7 @@ class Arm(Shown):
 
         Args:
             table: the parsed file.
-            name: of an arm whose file states none.
+            name: of the arm, where the file states none.
             known: catalogue of effects; the shipped and installed ones by default.
 
         Raises:
@@ -295,7 +295,7 @@ class Arm(Shown):
         return structure
 
     def present(self) -> list[tuple[str, Values]]:
-        """Effects whose values are not null, with these values, by name."""
+        """Effects with a value other than null, by name, with their values."""
         return [(n, self.effects[n]) for n in sorted(self.effects) if not self.known[n].absent(self.effects[n])]
 
     def laws(self) -> list[ActiveLaw]:

@@ -66,7 +66,7 @@ def arm_from_table(kind: type[Arm], table: Mapping[str, Any], name: str, known: 
     Args:
         kind: class of the arm.
         table: the parsed file.
-        name: of an arm whose file states none.
+        name: of the arm, where the file states none.
         known: catalogue of effects.
 
     Raises:

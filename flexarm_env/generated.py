@@ -1,6 +1,6 @@
 """Python modules made of text, in the user's cache, each named by the hash of all that it depends on.
 
-numba caches what it compiles of such a module across processes. A change in the text gives another module, so that nothing
+numba caches the machine code of such a module across processes. A change in the text gives another module, so that nothing
 that was compiled of an older text is ever used.
 """
 

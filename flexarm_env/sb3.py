@@ -100,7 +100,7 @@ class FlexArmVecEnv(VecEnv):
         self.envs.close()
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        """Return an attribute of the arms' common environment, once for each arm."""
+        """Read an attribute of the arms' common environment, once for each arm."""
         value = getattr(self.envs, attr_name)
         return [value for _ in self._get_indices(indices)]
 

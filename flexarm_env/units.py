@@ -107,7 +107,7 @@ def factor(unit: str, target: str, scale: str | float = 1.0) -> float:
     Args:
         unit: of the numbers, such as "deg" or "V".
         target: unit of the result, such as "rad".
-        scale: another factor, a number or a quantity such as "2 rad/V", whose unit counts.
+        scale: another factor, a number or a quantity such as "2 rad/V"; its unit counts.
 
     Raises:
         InputError: for an unknown unit, a unit of another quantity, or one with another zero, such as degC.

@@ -198,7 +198,7 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         return info
 
     def drawn_arm(self, arm: int) -> Arm:
-        """Return the machine that was drawn for the episode of arm number `arm`."""
+        """Look up the machine that was drawn for the episode of arm number `arm`."""
         return self.batch.arm_of(arm)
 
     def close_extras(self, **kwargs: Any) -> None:

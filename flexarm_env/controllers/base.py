@@ -28,7 +28,7 @@ class Controller(ABC):
         interval: control period [s].
 
     Raises:
-        InputError: for an arm that does not measure what the controller needs.
+        InputError: for an arm that lacks a measurement that the controller needs.
     """
 
     #: Signals without which the controller cannot work.

@@ -35,7 +35,7 @@ class Estimator:
         highest_frequency: of the vibrations that are followed [Hz].
 
     Raises:
-        InputError: for an arm whose state is not observable from its readings.
+        InputError: for an arm with a state that is not observable from its readings.
     """
 
     def __init__(self, arm: Arm, interval: float, highest_frequency: float = HIGHEST_FREQUENCY) -> None:

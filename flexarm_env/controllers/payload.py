@@ -30,7 +30,7 @@ class PayloadEstimator:
 
     Against the hub the beam is clamped, moving or stuck, and only the hub's acceleration drives it:
     ÿ + ω² y = −g θ̈ for the strain y and its first frequency ω. Neither friction nor the loop matters, as they would for
-    the frequency at which a moving arm swings. Both sides go through the same low-passes, whose states give the
+    the frequency at which a moving arm swings. Both sides go through the same low-passes, and their states give the
     derivatives (state-variable filters: Young, Automatica 17 (1981) 23), and ω² and g come by least squares with
     forgetting. The frequency table of the stuck arm then gives the payload.
 

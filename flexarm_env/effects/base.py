@@ -1,4 +1,4 @@
-"""What an effect is: parameters, an equation, and one or more ports through which it acts."""
+"""The base of an effect: parameters, an equation, and one or more ports through which it acts."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from flexarm_env.parameters import Parameter
 
 
 class Effect:
-    """A physical effect that an arm may have. Subclasses state what follows and give at least one port.
+    """A physical effect that an arm may have. Subclasses state the attributes below and give at least one port.
 
     Ports are static methods; an effect without the port leaves it out.
 
     - ``structure(structure, <parameters>)`` edits the arm's linear quantities (`flexarm_env.plant.structure.Structure`).
-    - ``friction(<named quantities>, <parameters>)`` returns what the effect adds to the budget of dry friction [Nm], from any
+    - ``friction(<named quantities>, <parameters>)`` returns the effect's part of the budget of dry friction [Nm], from any
       of direction (±1), speed (along the direction, ≥ 0) [rad/s], angle [rad], time [s], load (torque that the gears carry,
       arm side; of rigid gears, the drive's) [Nm], at_rest (bool).
-    - ``factor(…)`` returns by what all dry friction is multiplied, from any of angle, time.
+    - ``factor(…)`` returns the factor on all dry friction, from any of angle, time.
     - ``presliding(…)`` returns the friction [Nm] of a hub that yields before it slides, from any of before (the friction so
       far), travel since then [rad], level (the dry friction of sliding, ≥ 0). All dry friction then acts on the hub.
     - ``torque(…)`` returns a torque on the hub [Nm], from any of angle, speed, time.
@@ -27,8 +27,8 @@ class Effect:
     - ``drive(…)`` returns the command that gets through [A or V], from command, previous, interval [s].
     - ``ramp(…)`` returns the mean [A or V] over a part of a sample of a drive that is on its way to that command, from command,
       previous, start and end of the part [s], counted from where it left previous.
-    - ``sensor(…)`` returns what each sensor of `reads` shows, in SI units, from reading (without the effect), angle of the hub
-      [rad], motor_angle [rad], time [s].
+    - ``sensor(…)`` returns the reading of each sensor of `reads`, in SI units, from reading (without the effect), angle of the
+      hub [rad], motor_angle [rad], time [s].
 
     All but the first run in the compiled kernel: plain arithmetic and `math` only.
 
@@ -36,7 +36,7 @@ class Effect:
         name: as in arm files and on the command line.
         equation: for a person.
         parameters: by name, in the order in which the ports take them.
-        looks_like: what it looks like in data.
+        looks_like: its signs in data.
         confused_with: effects that look alike in most data.
         source: paper or textbook.
         varies: whether its friction changes while the hub turns one way.
@@ -48,7 +48,7 @@ class Effect:
         most_elements: finite elements of a beam beyond which it is no candidate.
         condition: the condition of a recording, as in "# payload = 0.3 kg", that is added to its size; "" for none.
         modifies: the effect that it changes and without which it is no candidate, "" for none.
-        needs: what the arm must have: "beam", "motor_inertia", "hub_inertia" (or a beam), names of signals, "strain" for any
+        needs: required of the arm: "beam", "motor_inertia", "hub_inertia" (or a beam), names of signals, "strain" for any
             strain gage, or its input, "current" or "voltage".
         fitted: whether its parameters can be fitted (a count cannot).
     """
@@ -73,7 +73,7 @@ class Effect:
 
     @classmethod
     def port(cls, name: str) -> Callable[..., float] | None:
-        """Return the function of a port, or None."""
+        """Look up the function of a port, or None."""
         found: Callable[..., float] | None = getattr(cls, name, None)
         return found
 
@@ -101,5 +101,5 @@ class Effect:
 
 
 def torque_size(meaning: str, typical: float = 0.05, low: float = 0.0) -> Parameter:
-    """A torque at the hub whose null is zero."""
+    """A torque at the hub, with zero as its null."""
     return Parameter("N*m", low, 1e4, typical, null=0.0, meaning=meaning)

@@ -160,7 +160,7 @@ class Batch:
         return self.setup.variation.arm(self.setup.arm, self.draws_of(arm))
 
     def draws_of(self, arm: int) -> list[float]:
-        """Return the unit-interval draws of an arm's present episode, one for each range: 0 is its low end, 1 its high one."""
+        """Look up the unit-interval draws of an arm's present episode, one for each range: 0 is its low end, 1 its high one."""
         key = self._key(arm, "arm")
         return [uniform(key, 0, i) for i in range(len(self.setup.variation.ranges))]
 

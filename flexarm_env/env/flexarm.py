@@ -32,7 +32,7 @@ class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
     """One flexible arm at a task; the classes of the registered tasks, such as SlewEnv, are pages about each.
 
     An environment built from the class never truncates an episode: wrap it in `gymnasium.wrappers.TimeLimit`, with
-    `setup.samples` steps. `gymnasium.make` adds a limit itself, `max_episode_steps`: the task's steps at 200 Hz, whatever the
+    `setup.samples` steps. `gymnasium.make` adds a limit itself, `max_episode_steps`: the task's steps at 200 Hz at any
     control rate, unless it is given.
 
     Args:
@@ -122,7 +122,7 @@ class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
         return plant.physical()
 
     def drawn_arm(self) -> Arm:
-        """Return the machine that was drawn for this episode."""
+        """Look up the machine that was drawn for this episode."""
         return self.batch.arm_of(0)
 
     def render(self) -> NDArray[np.uint8] | None:

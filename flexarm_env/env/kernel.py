@@ -73,7 +73,7 @@ def after_reset(arena, offsets, rng_keys, observations, arm):
 
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
 def request(actions, arena, offsets, limit):
-    """Write the commands that actions (arms,) request [A or V]; return the first arm whose action is not a number, or -1."""
+    """Write the commands that actions (arms,) request [A or V]; return the first arm with an action that is no number, or -1."""
     requested = offsets[AT_REQUESTED]
     for arm in range(len(actions)):
         action = actions[arm]
@@ -93,7 +93,7 @@ def copy_truth_to_outcome(a, offsets, arm):
 
 @njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)
 def advance_clock(a, offsets, arm):
-    """Count an arm's sample. What follows in the sample reads this number: its target, its draws, its time."""
+    """Count an arm's sample. The sample's target, draws and time depend on this number."""
     a[row_of(offsets, SAMPLE_COUNT, arm)] += 1.0
 
 

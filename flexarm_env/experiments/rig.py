@@ -107,7 +107,7 @@ class SpeedEstimate:
         self.speed = 0.0
 
     def read(self, readings: Floats) -> tuple[float, float]:
-        """Return angle [rad] and motor speed [rad/s]; without a tachometer the filtered slope of the angle."""
+        """Read angle [rad] and motor speed [rad/s]; without a tachometer the filtered slope of the angle."""
         angle = float(readings[self.angle])
         if self.tach >= 0:
             return angle, float(readings[self.tach])

@@ -35,7 +35,7 @@ def simulate(
         arm: with its sensors' noise, steps and dead times.
         input: "pulse" (open loop: 3 A from 0.5 to 1.0 s, then pulses of random size and time), "square" (PD to ±50° at
             0.2 Hz), "sweep" (slow PD motion and tones of random phase in the command), or a recording, or the path of
-            one, whose commands are played, with its payload; it needs no signals. Sizes are for a drive of 5 A and
+            one: its commands are played, with its payload, and it needs no signals. Sizes are for a drive of 5 A and
             scale with the arm's limit.
         duration: [s]; a recording brings its own.
         rate: samples per second [Hz]; a recording brings its own.
@@ -119,7 +119,7 @@ def _sampling(time: Floats) -> tuple[bool, float]:
     """Tell whether samples are even; return that and the interval [s], free of the rounding of the times."""
     steps = np.diff(time)
     median = float(np.median(steps))
-    # Narrower than in a diagnosis, which takes jitter below what its errors resolve for even: only rounding is left out here.
+    # Narrower than in a diagnosis, which takes jitter below the resolution of its errors for even: only rounding is left out.
     even = bool(np.abs(steps - median).max() <= 1e-6 * median)
     return even, float(f"{time[-1] / len(steps) if even else median:.12g}")
 

@@ -27,7 +27,7 @@ def conclude(
     calibrator: Calibrator,
     seed: int,
 ) -> Diagnosis:
-    """Calibrate the arm that the verdict names on all of the data, and collect what is known of it.
+    """Calibrate the arm that the verdict names on all of the data, and collect the findings on it.
 
     Args:
         verdict: of the criteria.

@@ -34,7 +34,7 @@ def fit(
     """Calibrate the constants of an arm.
 
     Args:
-        arm: the model, whose values are the centres of the priors.
+        arm: the model; its values are the centres of the priors.
         recordings: of the machine; the last part of each is held out.
         progress: called with the share done and a text.
         seed: recorded with the result.

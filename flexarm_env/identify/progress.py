@@ -43,7 +43,7 @@ class Progress:
         self.report(self.start + done * (self.end - self.start), text)
 
     def split(self, *weights: int) -> tuple[Progress, ...]:
-        """Split into consecutive spans whose lengths are in proportion to the weights."""
+        """Split into consecutive spans, with lengths in proportion to the weights."""
         total, before, spans = sum(weights), 0, []
         for weight in weights:
             spans.append(Progress(self.report, self._share(before / total), self._share((before + weight) / total)))

@@ -25,7 +25,7 @@ class Fit:
     Attributes:
         arm: the refitted arm, which carries the intervals.
         estimates: every fitted value.
-        error: "nominal", "refitted": rms over noise on what was held out, in windows of 1 s.
+        error: "nominal", "refitted": rms over noise on the held-out part, in windows of 1 s.
         free_run: the same, replayed once from the start.
         seconds: time taken.
         settings: numbers of the method.
@@ -45,7 +45,7 @@ class Addition:
 
     Attributes:
         arm: the new arm.
-        effect: what was added.
+        effect: the added one.
         estimates: the effect's parameters, then the constants.
         error: "nominal", "refitted" (constants only), "final" (with the effect): rms over noise, held out, windows of 1 s.
         free_run: the same, replayed once from the start.
@@ -95,7 +95,7 @@ class Diagnosis(Shown):
         arm: the corrected arm.
         nominal: the arm that came in.
         refitted: the arm with only its constants refitted.
-        notes: a sentence each for a person: findings on the recordings, and what is left.
+        notes: a sentence each for a person: findings on the recordings, and the remaining error.
         smallest: the size of each effect that is not accepted up to which it would go undetected in these recordings.
         next_run: the input to record next, where these leave something open.
         trace: the search, step by step, as plain data.

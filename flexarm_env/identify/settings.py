@@ -5,7 +5,7 @@ One frozen dataclass per stage; `Settings` holds them all. Results carry the set
 of the noise, less 1.
 
 In the origins of values, seeds and cases such as `null-38` are those of the benchmark of hidden effects, and EMPS, `thesis` and
-`cu-flexible` are shipped arms. "No sweep recorded" means that the value was tried on what is named, and no other is on record.
+`cu-flexible` are shipped arms. "No sweep recorded" means that the value was tried on the cases named, and no other is on record.
 """
 
 from __future__ import annotations
@@ -308,7 +308,7 @@ class Observers:
 
 @dataclass(frozen=True)
 class Parameters:
-    """Scales, priors and difference steps of what a calibration moves."""
+    """Scales, priors and difference steps of the values that a calibration moves."""
 
     widest: float = tuned(
         30.0, "Prior of an unbounded value, in typical sizes, so that a direction without information stays put."

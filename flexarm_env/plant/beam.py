@@ -22,17 +22,17 @@ BENDS = np.array([[-6, 12], [-4, 6], [6, -12], [-2, 6.0]])
 
 
 def spread_out(value: ArrayLike) -> Matrix:
-    """Return a quantity (…) in a shape that multiplies matrices (…, rows, columns)."""
+    """Reshape a quantity (…) to multiply matrices (…, rows, columns)."""
     return np.asarray(value, dtype=float)[..., None, None]
 
 
 def turned(matrix: Matrix) -> Matrix:
-    """Return the transposes of matrices (…, rows, columns)."""
+    """Transpose matrices (…, rows, columns)."""
     return np.swapaxes(matrix, -1, -2)
 
 
 def element_matrices(length: Matrix, mass_per_length: Matrix, bending_stiffness: Matrix) -> tuple[Matrix, Matrix]:
-    """Return mass and stiffness (…, 4, 4) of one element on [v, s, v, s] (thesis eqs. 3.7, 3.8 with erratum 1)."""
+    """Compute mass and stiffness (…, 4, 4) of one element on [v, s, v, s] (thesis eqs. 3.7, 3.8 with erratum 1)."""
     sizes = np.ones((*length.shape, 4))
     sizes[..., 1::2] = length[..., None]
     scale = sizes[..., :, None] * sizes[..., None, :]

@@ -23,7 +23,7 @@ Complex = NDArray[np.complex128]
 
 
 def blocks_of(dynamics: Matrix) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-    """Return (c0, c1, V, W) with ẋ = A x, x = V z and z = W x, z in blocks.
+    """Compute (c0, c1, V, W) with ẋ = A x, x = V z and z = W x, z in blocks.
 
     Args:
         dynamics: A, (…, states, states) [1/s].
@@ -56,7 +56,7 @@ def blocks_of(dynamics: Matrix) -> tuple[Matrix, Matrix, Matrix, Matrix]:
 
 @lru_cache(maxsize=64)
 def _blocks_of_one(dynamics: bytes, size: int) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-    """Return the blocks of one arm, cached: fits try many arms with the same dynamics."""
+    """Compute the blocks of one arm, cached: fits try many arms with the same dynamics."""
     c0, c1, v, w = (stack[0] for stack in blocks_of(np.frombuffer(dynamics).reshape(1, size, size)))
     for kept in (c0, c1, v, w):
         kept.flags.writeable = False
@@ -91,7 +91,7 @@ def _decompositions(every: Matrix) -> Iterator[tuple[Places, Matrix, Matrix, Mat
 def _columns(
     values: Complex, vectors: Complex, rates: Matrix, cyclic: Places, inner: Places
 ) -> tuple[Matrix, Matrix, Matrix, Places, Places]:
-    """Return c0, c1, V and the numbers of the real and of the vibrating blocks, from the eigenvectors of the inner states.
+    """Compute c0, c1, V and the numbers of the real and of the vibrating blocks, from the eigenvectors of the inner states.
 
     Args:
         values: (n, inner).
@@ -151,7 +151,7 @@ def _lack(cover: Matrix) -> NDArray[np.bool_]:
 def _with_inverse(
     c0: Matrix, c1: Matrix, v: Matrix, real: Places, vibrating: Places, cyclic: Places, inner: Places, lacks: bool
 ) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-    """Return c0, c1, V and its inverse W; with `lacks` the real modes do not span all cyclic places."""
+    """Compute c0, c1, V and its inverse W; with `lacks` the real modes do not span all cyclic places."""
     used = np.sort(np.concatenate([2 * real + 1, 2 * vibrating, 2 * vibrating + 1]))
     if lacks:  # then each has a block of its own, which never moves
         own = np.zeros((len(v), v.shape[1], 2 * len(cyclic)))

@@ -182,7 +182,7 @@ def _unsigned(index: ast.expr) -> ast.expr:
 
 
 def source_of(laws: Sequence[Law]) -> str:
-    """Return the text of the kernel with these laws in its switches, before signatures and unsigned indices are added."""
+    """Compose the text of the kernel with these laws in its switches, before signatures and unsigned indices are added."""
     here = Path(__file__).parent
     parts = [IMPORTS, _plain(here / "layout.py")]
     parts += [_switch(port, laws) for port in PORT_ARGUMENTS]
@@ -192,7 +192,7 @@ def source_of(laws: Sequence[Law]) -> str:
 
 
 def compose(laws: Sequence[Law]) -> ModuleType:
-    """Return the compiled kernel for a catalogue's laws, from the cache where it has been compiled before.
+    """Compile the kernel for a catalogue's laws, or load it from the cache where it has been compiled before.
 
     Args:
         laws: all laws of the catalogue; `kind` is a law's index here.

@@ -18,7 +18,7 @@ from flexarm_env.plant.substep import UNTABULATED, substep, substep_scratch
 
 @njit
 def table_place(n: Places) -> int:
-    """Return the place in w of a table for a step of any length, behind the scratch of steps and substeps, which they share."""
+    """Locate in w a table for a step of any length, behind the scratch of steps and substeps, which they share."""
     return max(substep_scratch(n), step_scratch(n))
 
 
@@ -30,7 +30,7 @@ def scratch_size(n: Places) -> int:
 
 @njit(forceinline=True)
 def drive_output(d: Numbers, n: Places, s: Numbers, command: float) -> float:
-    """Return the drive's output [A or V] for a command, and store it."""
+    """Compute the drive's output [A or V] for a command, and store it."""
     place, before = n[at.DRIVE_LAWS], s[at.COMMAND]
     for j in range(n[place]):
         command = drive_law(n[place + 1 + 2 * j], command, before, d[at.INTERVAL], d, n[place + 2 + 2 * j])
@@ -40,7 +40,7 @@ def drive_output(d: Numbers, n: Places, s: Numbers, command: float) -> float:
 
 @njit(forceinline=True)
 def mean_during_ramp(d: Numbers, n: Places, before: float, command: float, start: float, end: float) -> float:
-    """Return the drive's mean output from start to end [s] after the command changed, while it ramps to the new one."""
+    """Compute the drive's mean output from start to end [s] after the command changed, while it ramps to the new one."""
     place = n[at.RAMP_LAWS]
     for j in range(n[place]):
         command = ramp_law(n[place + 1 + 2 * j], command, before, start, end, d, n[place + 2 + 2 * j])

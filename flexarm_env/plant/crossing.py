@@ -97,7 +97,7 @@ def proves(low: Point, high: Point, second: float, fourth: float) -> tuple[bool,
 
 @njit(forceinline=True)
 def cubic_root(low: Point, high: Point) -> float:
-    """Return the time after `low` of the zero of the cubic through both ends, above zero at `low` and below at `high`."""
+    """Find the time after `low` of the zero of the cubic through both ends, above zero at `low` and below at `high`."""
     width = high.t - low.t
     slope = (high.value - low.value) / width
     c3 = (low.rate + high.rate - 2.0 * slope) / (width * width)
@@ -115,14 +115,14 @@ def cubic_root(low: Point, high: Point) -> float:
 
 @njit(forceinline=True)
 def point_at(m: Motion, line: Line, t: float) -> Point:
-    """Return value and rate at time t, to which the trial motion is advanced."""
+    """Compute value and rate at time t, to which the trial motion is advanced."""
     value, rate, _ = value_at(m, line, t)
     return Point(t, value, rate)
 
 
 @njit(forceinline=True)
 def polished_root(m: Motion, line: Line, low: Point, high: Point, end: float, second: float, fourth: float) -> float:
-    """Return the only root between two points: Halley's method from the cubic's root, kept between the ends."""
+    """Find the only root between two points: Halley's method from the cubic's root, kept between the ends."""
     earliest, latest = low.t, high.t
     t = low.t + cubic_root(low, high)
     third = math.sqrt(second * fourth)  # a bound, too: the second and fourth are sums of squares
@@ -146,7 +146,7 @@ def polished_root(m: Motion, line: Line, low: Point, high: Point, end: float, se
 
 @njit(forceinline=True)
 def first_crossing(m: Motion, line: Line, start: Point, end: Point, second: float, fourth: float) -> float:
-    """Return the first time in (start, end] at which the value falls to zero, or −1.
+    """Find the first time in (start, end] at which the value falls to zero, or −1.
 
     Intervals are halved until the bounds of the second and fourth derivatives prove that a part holds no root or only one, so no
     root is missed.

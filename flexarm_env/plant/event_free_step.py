@@ -61,7 +61,7 @@ def write_inputs(a: Arrays, command: float, places: StepScratch) -> None:
 
 @njit(forceinline=True)
 def forcing_of(d: Numbers, row: int, w: Numbers, inputs: int, coupled: bool) -> float:
-    """Return the force on one coordinate of a block, from the drivers."""
+    """Compute the force on one coordinate of a block, from the drivers."""
     force = d[row + at.W_COMMAND] * w[inputs + at.W_COMMAND] + d[row + at.W_HUB] * w[inputs + at.W_HUB] + d[row + at.W_ONE]
     if coupled:
         force += d[row + at.W_MOTOR] * w[inputs + at.W_MOTOR] + d[row + at.W_SIDE] * w[inputs + at.W_SIDE]
@@ -97,7 +97,7 @@ def move_blocks(a: Arrays, moves: bool, table: StepTable, places: StepScratch) -
 
 @njit(forceinline=True)
 def chord_of(a: Arrays, row: int, places: StepScratch) -> Chord:
-    """Return the chord of the row that is tested for a body's event, or (last) for the gears'."""
+    """Compute the chord of the row that is tested for a body's event, or (last) for the gears'."""
     d, s, w = a.d, a.s, a.w
     place, weight = tested_row(a.n, int(s[at.MODE]), row)
     before, after, bend = 0.0, 0.0, 0.0

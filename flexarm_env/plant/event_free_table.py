@@ -108,14 +108,14 @@ def has_step_tables(n: Places) -> bool:
 
 @njit(forceinline=True)
 def tabulated_step(d: Numbers, n: Places, mode: int, slot: int, level: int) -> StepTable:
-    """Return the table in d of a substep that is halved `level` times."""
+    """Locate the table in d of a substep that is halved `level` times."""
     level += slot * (DEPTH + 1 if n[at.VARYING] else 1)
     return step_table(n, d, record(n, mode) + n[at.STEP_TABLES] + level * table_size(n))
 
 
 @njit
 def tested_row(n: Places, mode: int, row: int) -> tuple[int, int]:
-    """Return the places of the row that is tested for a body's event, or (last) for the gears', and of its weights."""
+    """Locate the row that is tested for a body's event, or (last) for the gears', and its weights."""
     here, blocks = record(n, mode), n[at.BLOCKS]
     if row == n[at.BODIES]:
         return here + n[at.MESH], here + n[at.MESH_WEIGHT]

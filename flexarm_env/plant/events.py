@@ -28,7 +28,7 @@ class Event(NamedTuple):
 
 @njit
 def crossing_time(m: Motion, line: Line, start: float, end: float, best: float) -> float:
-    """Return the time at which a quantity falls to zero within (start, min(end, best)], or `best`.
+    """Find the time at which a quantity falls to zero within (start, min(end, best)], or `best`.
 
     The trial motion is advanced to it, and its state then is stored behind the trial motion.
     """
@@ -57,7 +57,7 @@ def crossing_time(m: Motion, line: Line, start: float, end: float, best: float) 
 
 @njit
 def play_edge(d: Numbers, s: Numbers, mode: int, side: float) -> float:
-    """Return the offset [rad] by held angles and half the gap of the windup towards a side; teeth touch where the sum is ≥ 0."""
+    """Compute the offset [rad] by held angles and half the gap of the windup towards a side; teeth touch where the sum is ≥ 0."""
     held = 0.0
     if is_stuck(mode, 1):
         held += s[at.HELD_MOTOR]
@@ -68,7 +68,7 @@ def play_edge(d: Numbers, s: Numbers, mode: int, side: float) -> float:
 
 @njit
 def gear_event_time(m: Motion, n: Places, start: float, end: float, side: float, best: float) -> float:
-    """Return the time at which gears that touch on `side` part, or open gears meet there; else `best`.
+    """Find the time at which gears that touch on `side` part, or open gears meet there; else `best`.
 
     Teeth push and never pull: they part when their torque, damping included, falls to zero, and push again when it
     rises, or when they meet anew.
@@ -90,7 +90,7 @@ def gear_event_time(m: Motion, n: Places, start: float, end: float, side: float,
 
 @njit
 def overlap_end_time(m: Motion, n: Places, start: float, end: float, side: float, best: float) -> float:
-    """Return the time at which teeth that parted while they overlapped are clear of each other; else `best`."""
+    """Find the time at which teeth that parted while they overlapped are clear of each other; else `best`."""
     d, s, mode = m.d, m.s, int(m.s[at.MODE])
     if not mode & GEAR_OPEN:
         return best
@@ -105,7 +105,7 @@ def overlap_end_time(m: Motion, n: Places, start: float, end: float, side: float
 def breakaway_time(
     a: Arrays, m: Motion, body: int, command: float, coefficients: int, start: float, end: float, best: float
 ) -> float:
-    """Return the time at which a held body breaks away within (start, end], else `best`; −1 if at once."""
+    """Find the time at which a held body breaks away within (start, end], else `best`; −1 if at once."""
     d, n, s, w = a.d, a.n, a.s, a.w
     mode, blocks = int(s[at.MODE]), n[at.BLOCKS]
     here = record(n, mode)
@@ -126,7 +126,7 @@ def breakaway_time(
 
 @njit(forceinline=True)
 def motion_of(a: Arrays, places: SubstepScratch) -> Motion:
-    """Return the motion over a substep from the present state, with its trial motion at the start."""
+    """Set up the motion over a substep from the present state, with its trial motion at the start."""
     n, here = a.n, record(a.n, int(a.s[at.MODE]))
     blocks = Blocks(here + n[at.C0], here + n[at.C1], n[at.BLOCKS], n[at.VARYING])
     m = Motion(a.d, a.s, a.w, blocks, places.force, places.trial, places.sizes, places.copy)
@@ -136,7 +136,7 @@ def motion_of(a: Arrays, places: SubstepScratch) -> Motion:
 
 @njit(forceinline=True)
 def next_event(a: Arrays, command: float, places: SubstepScratch, start: float, end: float) -> Event:
-    """Return the first event within (start, end]; kind NOTHING if there is none.
+    """Find the first event within (start, end]; kind NOTHING if there is none.
 
     If its time is not 0, the state at the event is in w at `found`.
     """

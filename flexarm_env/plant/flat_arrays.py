@@ -76,7 +76,7 @@ def _modes(structure: Structure, model: LinearModel) -> list[Mode]:
 
 
 def _counts(structure: Structure, model: LinearModel, modes: Sequence[Mode], points: int, varying: bool) -> NDArray[np.int64]:
-    """Return n without its places and lists."""
+    """Fill the sizes and flags of n, without its places and lists."""
     n = np.zeros(at.COUNTS, dtype=np.int64)
     bodies = 2 if structure.separate_motor else 1
     n[at.BODIES], n[at.COORDINATES], n[at.POINTS] = bodies, len(model.names), points
@@ -98,7 +98,7 @@ def _longest_step(n: NDArray[np.int64], active: Sequence[ActiveLaw], interval: f
 
 
 def _constants(structure: Structure, laws: Sequence[Sequence[ActiveLaw]], interval: float, lengths: Matrix) -> Matrix:
-    """Return the single constants of d, for substeps of some lengths (…, 2) before and after the delay's end."""
+    """Collect the single constants of d, for substeps of some lengths (…, 2) before and after the delay's end."""
     head = np.zeros((*lengths.shape[:-1], at.CONSTANTS))
     head[..., at.GAP] = structure.gear_gap / structure.gear_ratio
     head[..., at.TOLERANCE], head[..., at.INTERVAL], head[..., at.GEAR_RATIO] = TOLERANCE, interval, structure.gear_ratio
@@ -114,7 +114,7 @@ def _constants(structure: Structure, laws: Sequence[Sequence[ActiveLaw]], interv
 
 
 def _points(model: LinearModel, active: Sequence[ActiveLaw]) -> NDArray[np.intp]:
-    """Return the places of the forces on the beam that laws give: the drag at each point, and weight, the last."""
+    """Locate the forces on the beam that laws give: the drag at each point, and weight, the last."""
     ports, last = {law.port for law in active}, model.beam_force.shape[-1] - 1
     return np.arange(0 if "drag" in ports else last, last + 1 if "weight" in ports else last)
 
@@ -128,7 +128,7 @@ def _size_of_tables(n: NDArray[np.int64]) -> int:
 
 
 def split_delay(delay: ArrayLike, interval: float) -> tuple[int, Matrix]:
-    """Return whole samples and the rest [s] of a delay, or the rests of some with as many; the whole part may be negative."""
+    """Split a delay into whole samples and the rest [s], or the rests of some with as many; the whole part may be negative."""
     whole = int(np.floor(np.ravel(delay)[0] / interval + 1e-9))
     rest = np.asarray(delay) - whole * interval
     return whole, np.where(rest > 1e-9 * interval, rest, 0.0)
@@ -137,7 +137,7 @@ def split_delay(delay: ArrayLike, interval: float) -> tuple[int, Matrix]:
 def _record(
     structure: Structure, model: LinearModel, mode: Mode, which: int, points: NDArray[np.intp], n: NDArray[np.int64]
 ) -> dict[int, Matrix]:
-    """Return the parts of one mode's record in d, by their places in n."""
+    """Compute the parts of one mode's record in d, by their places in n."""
     size, bodies, blocks = len(model.names), int(n[at.BODIES]), int(n[at.BLOCKS])
     torques = [HUB_TORQUE, MOTOR_TORQUE][:bodies]
     physical = _wide(mode.physical, blocks)
@@ -183,7 +183,7 @@ def _wide(matrix: Matrix, blocks: int) -> Matrix:
 
 
 def _weights(rows: Matrix, c0: Matrix, c1: Matrix) -> Matrix:
-    """Return the weights of the blocks' amplitudes in the bound of each row's curvature."""
+    """Compute the weights of the blocks' amplitudes in the bound of each row's curvature."""
     a = rows[..., 0::2] - rows[..., 1::2] * c1[..., None, :]
     weights: Matrix = np.sqrt(a**2 + rows[..., 1::2] ** 2 * c0[..., None, :])
     return weights

@@ -14,7 +14,7 @@ from flexarm_env.plant.propagate import dot
 
 @njit(forceinline=True)
 def effect_torque(d: Numbers, n: Places, body: int, angle: float, speed: float, time: float) -> float:
-    """Return the non-linear torque [Nm] of the effects, which acts on the hub."""
+    """Sum the non-linear torque [Nm] of the effects, which acts on the hub."""
     total = 0.0
     place = n[at.TORQUE_LAWS]
     for j in range(n[place] if body == 0 else 0):
@@ -24,7 +24,7 @@ def effect_torque(d: Numbers, n: Places, body: int, angle: float, speed: float, 
 
 @njit
 def angle_of(d: Numbers, n: Places, s: Numbers, mode: int, body: int, z: Segment) -> float:
-    """Return the arm-side angle [rad] of hub or motor."""
+    """Compute the arm-side angle [rad] of hub or motor."""
     here = record(n, mode)
     free = dot(d, here + n[at.ANGLE] + body * 2 * n[at.BLOCKS], z.data, z.first, 2 * n[at.BLOCKS])
     return free + d[here + n[at.HOLDS_ANGLE] + body] * s[at.HELD_HUB + body]

@@ -25,7 +25,7 @@ class Contact(NamedTuple):
 
 @njit
 def friction_budget(d: Numbers, n: Places, body: int, c: Contact) -> float:
-    """Return dry friction [Nm] against motion in a direction, or at rest against a push: the sum over the effects."""
+    """Compute dry friction [Nm] against motion in a direction, or at rest against a push: the sum over the effects."""
     total = 0.0
     place = n[at.FRICTION_LAWS]
     for j in range(n[place]):
@@ -48,14 +48,14 @@ def preslides(n: Places, body: int) -> bool:
 
 @njit
 def presliding_friction(d: Numbers, n: Places, s: Numbers, angle: float, level: float) -> float:
-    """Return the presliding friction [Nm] of the hub against motion to positive angles, from its last known value."""
+    """Compute the presliding friction [Nm] of the hub against motion to positive angles, from its last known value."""
     place = n[at.PRESLIDING_LAWS]
     return presliding_law(n[place + 1], s[at.KNOWN_FRICTION], angle - s[at.KNOWN_ANGLE], level, d, n[place + 2])
 
 
 @njit
 def gear_load(d: Numbers, n: Places, s: Numbers, mode: int, windup: float, rate: float) -> float:
-    """Return the torque [Nm, arm side] in the gears; in rigid ones, the drive's."""
+    """Compute the torque [Nm, arm side] in the gears; in rigid ones, the drive's."""
     if n[at.BODIES] == 1:
         return d[at.LOAD_BY_COMMAND] * s[at.COMMAND]
     if mode >= GEAR_OPEN:

@@ -83,7 +83,7 @@ def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
 
 
 def _dynamics(model: LinearModel, free: Matrix, stiffness: Matrix, damping: Matrix, inverse: Matrix) -> Matrix:
-    """Return A (…, states, states) of ẋ = A x, for x the free positions, their rates and the extra states."""
+    """Compute A (…, states, states) of ẋ = A x, for x the free positions, their rates and the extra states."""
     arms, size, positions = model.mass.shape[:-2], len(model.names), free.shape[1]
     states = 2 * positions + model.extra.shape[-1]
     dynamics = np.zeros((*arms, states, states))
@@ -101,14 +101,14 @@ def _dynamics(model: LinearModel, free: Matrix, stiffness: Matrix, damping: Matr
 
 
 def _padded(accelerations: Matrix, dynamics: Matrix, rows: slice) -> Matrix:
-    """Return accelerations in the rows of the positions' rates, and zeros in those of the other states."""
+    """Place accelerations in the rows of the positions' rates, and zeros in those of the other states."""
     padded = np.zeros((*dynamics.shape[:-1], accelerations.shape[-1]))
     padded[..., rows, :] = accelerations
     return padded
 
 
 def _resisted(model: LinearModel, stiffness: Matrix, damping: Matrix, inertial: Matrix, dynamics: Matrix) -> Matrix:
-    """Return the rows (…, bodies, states) of the torque that friction resists, from matrices on the free positions."""
+    """Compute the rows (…, bodies, states) of the torque that friction resists, from matrices on the free positions."""
     bodies, positions = inertial.shape[-2], inertial.shape[-1]
     rows = slice(positions, 2 * positions)
     resist = np.zeros((*inertial.shape[:-1], dynamics.shape[-1]))

@@ -13,7 +13,7 @@ GEAR_OPEN = 4
 
 @njit
 def record(n: Places, mode: int) -> int:
-    """Return the place in d of a mode's record."""
+    """Locate a mode's record in d."""
     return n[at.MODES] + mode * n[at.STRIDE]
 
 

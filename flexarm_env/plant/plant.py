@@ -44,7 +44,7 @@ class Plant:
         self.state = np.zeros(at.Z_START + 2 * self.blocks)
 
     def constants_of(self, structures: Sequence[Structure], laws: Sequence[Sequence[ActiveLaw]]) -> Matrix:
-        """Return the constants (arms, numbers) of arms that differ from this one in their numbers only.
+        """Compute the constants (arms, numbers) of arms that differ from this one in their numbers only.
 
         Args:
             structures: the linear part of each.
@@ -67,12 +67,12 @@ class Plant:
         return self.constants[start : start + rows * 2 * self.blocks].reshape(rows, 2 * self.blocks)
 
     def to_modal(self, mode: int) -> Matrix:
-        """Return the matrix (2 blocks, states) that gives a mode's block coordinates from the physical state."""
+        """Look up the matrix (2 blocks, states) that gives a mode's block coordinates from the physical state."""
         start = self.layout[at.MODES] + mode * self.layout[at.STRIDE] + self.layout[at.MODAL]
         return self.constants[start : start + 2 * self.blocks * self.states].reshape(2 * self.blocks, self.states)
 
     def transition(self, mode: int, interval: float) -> tuple[Matrix, Matrix]:
-        """Return the transition matrix of the physical state over an interval [s] in a mode.
+        """Compute the transition matrix of the physical state over an interval [s] in a mode.
 
         Returns:
             (states, states); (states,), the change by 1 Nm on the hub.
@@ -100,7 +100,7 @@ class Plant:
         self.kernel.place_at(self.constants, self.layout, self.state, start, command, self.scratch)
 
     def physical(self) -> Matrix:
-        """Return [q, q̇, extra] (states,): angles [rad], deflections [m], their rates, lagged current and filters."""
+        """Compute [q, q̇, extra] (states,): angles [rad], deflections [m], their rates, lagged current and filters."""
         out = np.zeros(self.states)
         self.kernel.to_physical(self.constants, self.layout, self.state, int(self.state[at.MODE]), out, 0)
         return out
@@ -139,7 +139,7 @@ class Plant:
         return readings
 
     def delayed(self, commands: Matrix) -> Matrix:
-        """Return commands (samples,) shifted by the whole samples of the delay; the rest of it is in the plant."""
+        """Shift commands (samples,) by the whole samples of the delay; the rest of it is in the plant."""
         shift = self.delay_samples
         if shift == 0:
             return commands

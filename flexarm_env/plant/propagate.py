@@ -26,7 +26,7 @@ RESPONSE = 5
 
 @njit(forceinline=True)
 def series(d0: float, d1: float, terms: int) -> tuple[float, float, float, float, float]:
-    """Return (C, S/t, R0/t², R1/t³, R2/t⁴) of one block from d₀ = c₀ t², d₁ = c₁ t.
+    """Compute (C, S/t, R0/t², R1/t³, R2/t⁴) of one block from d₀ = c₀ t², d₁ = c₁ t.
 
     R₁ and R₂ by their series, the rest from S = t − c₁ R₀ − c₀ R₁ and its integral, which lose nothing in a short t.
     """
@@ -42,13 +42,13 @@ def series(d0: float, d1: float, terms: int) -> tuple[float, float, float, float
 
 @njit(forceinline=True)
 def series_argument(c0: float, c1: float, t: float) -> float:
-    """Return |c₀| t² + |c₁ t|, on which the number of terms of the series depends."""
+    """Compute |c₀| t² + |c₁ t|, on which the number of terms of the series depends."""
     return abs(c0) * t * t + abs(c1 * t)
 
 
 @njit(forceinline=True)
 def block_response(c0: float, c1: float, t: float) -> tuple[float, float, float, float, float]:
-    """Return (C, S, R0, R1, R2) of one block after time t [s]: the series of a short part of t, doubled until it is t.
+    """Compute (C, S, R0, R1, R2) of one block after time t [s]: the series of a short part of t, doubled until it is t.
 
     It holds for any damping, without cases, and takes no longer than one sine, cosine and exponential.
     """
@@ -105,7 +105,7 @@ def advance(d: Numbers, blocks: Blocks, table: Segment, z: Segment, w: Numbers, 
 
 @njit(forceinline=True)
 def inlined_dot(d: Numbers, row: int, z: Numbers, first: int, count: int) -> float:
-    """Return the product of the row at `row` in d and the numbers at `first` in z, as three independent sums."""
+    """Compute the product of the row at `row` in d and the numbers at `first` in z, as three independent sums."""
     one, two, three = 0.0, 0.0, 0.0
     i = 0
     while i + 2 < count:
@@ -121,5 +121,5 @@ def inlined_dot(d: Numbers, row: int, z: Numbers, first: int, count: int) -> flo
 
 @njit
 def dot(d: Numbers, row: int, z: Numbers, first: int, count: int) -> float:
-    """Return inlined_dot's product by a call: for places where less code is worth more."""
+    """Compute inlined_dot's product by a call: for places where less code is worth more."""
     return inlined_dot(d, row, z, first, count)

@@ -69,7 +69,7 @@ def prepare(d: Numbers, n: Places) -> None:
 
 @njit(forceinline=True)
 def limits(a: Arrays, here: int, stuck: bool, command: float, torque: float) -> tuple[float, float, float, float]:
-    """Return (torque on the hub, offset, low, high): no event while the row on z plus offset stays between the two."""
+    """Compute (torque on the hub, offset, low, high): no event while the row on z plus offset stays between the two."""
     d, n, s = a.d, a.n, a.s
     direction, held, time = s[at.HUB_DIRECTION], s[at.HELD_HUB], s[at.TIME]
     if stuck:

@@ -1,4 +1,4 @@
-"""The linear part of a sensor: rows on an arm's coordinates, and what becomes of them on the way to a reading."""
+"""The linear part of a sensor: rows on an arm's coordinates, and their gain, offset and filter on the way to a reading."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from flexarm_env.errors import InputError
 from flexarm_env.plant.beam import Beam, Matrix
 
-#: Time constant [s] of an accelerometer whose filter is not given: as fast as one is.
+#: Time constant [s] of an accelerometer with no filter given: as fast as one is.
 FASTEST_ACCELEROMETER = 1e-4
 
 
@@ -112,7 +112,7 @@ class Channel:
 
 
 def time_constant(reading: Reading, channel: Channel) -> float | Matrix:
-    """Return the time constant [s] of a channel's filter; a reading of an acceleration, which jumps, always has one."""
+    """Compute the time constant [s] of a channel's filter; a reading of an acceleration, which jumps, always has one."""
     if reading.acceleration is None:
         return channel.filter
     least: float | Matrix = np.maximum(channel.filter, FASTEST_ACCELEROMETER)

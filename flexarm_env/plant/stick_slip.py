@@ -22,7 +22,7 @@ def has_friction(d: Numbers, n: Places, body: int) -> bool:
 def applied_offset(
     d: Numbers, n: Places, s: Numbers, body: int, command: float, w: Numbers, coefficients: int, order: int
 ) -> float:
-    """Return a coefficient (of 1, t, t²/2) of the torque on a body at rest, without the part in its row on z."""
+    """Compute a coefficient (of 1, t, t²/2) of the torque on a body at rest, without the part in its row on z."""
     here = record(n, int(s[at.MODE]))
     total = 0.0
     if order == 0:
@@ -36,7 +36,7 @@ def applied_offset(
 
 @njit
 def load_now(d: Numbers, n: Places, s: Numbers, mode: int) -> float:
-    """Return the present torque [Nm, arm side] in the gears, as far as laws depend on it."""
+    """Compute the present torque [Nm, arm side] in the gears, as far as laws depend on it."""
     if not n[at.VARYING] or n[at.BODIES] == 1:
         return gear_load(d, n, s, mode, 0.0, 0.0)
     here, size = record(n, mode), 2 * n[at.BLOCKS]
@@ -48,7 +48,7 @@ def load_now(d: Numbers, n: Places, s: Numbers, mode: int) -> float:
 
 @njit
 def static_budget(d: Numbers, n: Places, s: Numbers, body: int, direction: float, angle: float, load: float) -> float:
-    """Return the static friction [Nm] against a push in `direction` on a body at rest at an angle."""
+    """Compute the static friction [Nm] against a push in `direction` on a body at rest at an angle."""
     at_rest = friction_budget(d, n, body, Contact(direction, 0.0, angle, s[at.TIME], load, True))
     # with static friction below sliding friction, a body that breaks away would be driven by its own friction
     return max(at_rest, friction_budget(d, n, body, Contact(direction, 0.0, angle, s[at.TIME], load, False)))

@@ -12,17 +12,17 @@ from flexarm_env.errors import InputError
 from flexarm_env.plant.beam import Beam, Matrix, spread_out, turned
 from flexarm_env.plant.reading import Channel, Coordinates, Reading, time_constant
 
-#: What drives the linear part: the command, dry friction and non-linear torque on hub and motor, the constant 1,
+#: Drivers of the linear part: the command, dry friction and non-linear torque on hub and motor, the constant 1,
 #: the side on which the gears touch (−1, 0, 1), and the angles of a held hub and a held motor.
 DRIVERS = ("command", "hub_torque", "motor_torque", "one", "gear_side", "held_hub", "held_motor")
 COMMAND, HUB_TORQUE, MOTOR_TORQUE, ONE, GEAR_SIDE, HELD_HUB, HELD_MOTOR = range(len(DRIVERS))
 
-#: What arms of one kind have in common.
+#: Quantities that arms of one kind have in common.
 WHOLE = ("elements", "sensors")
-#: How fast a motor swings on gears that touch and whose hub is held [rad/s]: where backlash asks for a motor of its own but no
-#: compliance is given, stiff enough that windup stays below what a pot resolves; and on gears that are as good as rigid.
+#: Frequency of a motor on touching gears with the hub held [rad/s]: where backlash requires a separate motor but no compliance
+#: is given, stiff enough that windup stays below a pot's resolution; and on gears that are as good as rigid.
 STIFF_GEARS, RIGID_GEARS = 960.0, 48e3
-#: A beam's root that turns by less than this share of what the beam itself does (length over bending stiffness) is rigid: its
+#: A beam's root that turns by less than this share of the beam's own turn (length over bending stiffness) is rigid: its
 #: undamped mode is too fast to be seen, and costs fifty times a replay.
 LEAST_ROOT_SHARE = 1e-3
 
@@ -88,17 +88,17 @@ class Structure:
 
     @property
     def amps_by_command(self) -> float:
-        """What a command of 1 makes of the motor's current at rest [A/A or A/V]."""
+        """Motor current per command at rest [A/A or A/V]."""
         return 1.0 / self.resistance if exceeds(self.resistance, 0.0) else 1.0
 
     @property
     def torque_by_command(self) -> float:
-        """What a command of 1 makes of the drive's torque at rest, arm side [Nm/A or Nm/V]."""
+        """Drive torque per command at rest, arm side [Nm/A or Nm/V]."""
         return self.gear_ratio * self.torque_constant * self.amps_by_command
 
 
 def stacked(structures: Sequence[Structure]) -> Structure:
-    """Return arms of one kind, which differ in their numbers only, as one structure whose quantities are (arms,)."""
+    """Stack arms of one kind, which differ in their numbers only, into one structure of (arms,) quantities."""
     first, every = structures[0], [vars(structure) for structure in structures]
     values: dict[str, Any] = {name: np.array([each[name] for each in every]) for name in every[0] if name not in WHOLE}
     for signal in first.sensors:
@@ -123,10 +123,10 @@ class LinearModel:
     extra_from_input: Matrix
     output: Matrix
     output_from_input: Matrix
-    beam_force: Matrix  # (coordinates, drag points + 1): by drag at each point, by what weighs 1 Nm about the hub without payload
+    beam_force: Matrix  # (coordinates, drag points + 1): by drag at each point, by a weight of 1 Nm about the hub without payload
     beam_velocity: Matrix  # (drag points + 1, coordinates): of each point; the last row is empty
     signals: list[str]
-    settled: Matrix  # (extra, 2 coordinates): filters of accelerations from [q, q̇], of an arm whose speed has long been the same
+    settled: Matrix  # (extra, 2 coordinates): filters of accelerations from [q, q̇], of an arm long at constant speed
 
 
 def assemble(structure: Structure) -> LinearModel:
@@ -276,7 +276,7 @@ def _reading(signal: str, channel: Channel, coordinates: Coordinates) -> Reading
 
 
 def _grown(matrix: Matrix, rows: int, columns: int) -> Matrix:
-    """Return matrices with zeros below and to the right."""
+    """Pad matrices with zeros below and to the right."""
     grown = np.zeros((*matrix.shape[:-2], rows, columns))
     grown[..., : matrix.shape[-2], : matrix.shape[-1]] = matrix
     return grown

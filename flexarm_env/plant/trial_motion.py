@@ -53,7 +53,7 @@ def arrive(m: Motion, t: float) -> None:
 
 @njit(forceinline=True)
 def rate_at_end(m: Motion, row: int, t: float) -> float:
-    """Return row · ż of the state at the end of the step, t [s] after the force began."""
+    """Compute row · ż of the state at the end of the step, t [s] after the force began."""
     d, w, size = m.d, m.w, 2 * m.blocks.number
     total = 0.0
     for k in range(m.blocks.number):
@@ -67,7 +67,7 @@ def rate_at_end(m: Motion, row: int, t: float) -> float:
 
 @njit
 def value_at(m: Motion, line: Line, t: float) -> tuple[float, float, float]:
-    """Return a quantity at time t, its first and second derivative; the trial motion is advanced to t."""
+    """Compute a quantity at time t, its first and second derivative; the trial motion is advanced to t."""
     arrive(m, t)
     d, w, size = m.d, m.w, 2 * m.blocks.number
     value, rate, bend = 0.0, 0.0, 0.0

@@ -25,7 +25,7 @@ def layout_of(path: Path, columns: ColumnMap, require_signal: bool = True) -> tu
         require_signal: whether the file must hold a signal; commands alone are always read by a header of FlexArm's own.
 
     Returns:
-        The map, or None to follow the header; and what to note where they differ, else "".
+        The map, or None to follow the header; and a note where they differ, else "".
     """
     own, texts = _own_header(path)
     if "time" not in own:
@@ -43,7 +43,7 @@ def layout_of(path: Path, columns: ColumnMap, require_signal: bool = True) -> tu
 
 
 def _own_header(path: Path) -> tuple[dict[str, Source], list[str]]:
-    """Return the sources that a header of FlexArm's own states, and its cells; nothing where there is none."""
+    """Read the sources that a header of FlexArm's own states, and its cells; nothing where there is none."""
     if not path.is_file():  # a pipe would wait for ever
         return {}, []
     try:
@@ -55,7 +55,7 @@ def _own_header(path: Path) -> tuple[dict[str, Source], list[str]]:
 
 
 def _found(columns: ColumnMap, texts: list[str]) -> dict[str, Source]:
-    """Return the sources of a map that lie in a header of FlexArm's own, with numbers in the place of texts."""
+    """Select the sources of a map that lie in a header of FlexArm's own, with numbers in the place of texts."""
     if columns.delimiter != "," or columns.header_prefix:
         return {}
     numbers = {text.strip(): number for number, text in enumerate(texts)}

@@ -89,7 +89,7 @@ def read_numbers(
     Raises:
         InputError: for the first row of another width, or the first cell that is no number.
     """
-    # numpy's reader is fast, does not say where a fault is, and checks no width: Python reads again what is not plain.
+    # numpy's reader is fast, but locates no fault and checks no width: Python reads again any rows that are not plain.
     delimiter = layout.delimiter
     plain = delimiter != " " or not any('"' in row for row in rows)
     if plain and even and max(labels) < width:

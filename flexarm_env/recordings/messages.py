@@ -10,7 +10,7 @@ _LONGEST = 40
 
 
 def quoted(text: str) -> str:
-    """Quote a file's text, cut to what a message can hold."""
+    """Quote a file's text, cut to the room in a message."""
     return repr(text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}...")
 
 

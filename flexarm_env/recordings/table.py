@@ -44,7 +44,7 @@ class Table:
         found = {}
         for name, values in self.values.items():
             factor = si_factor(name, self.sources[name], calibration)
-            with np.errstate(over="ignore", invalid="ignore"):  # what overflows is reported with its row
+            with np.errstate(over="ignore", invalid="ignore"):  # an overflow is reported with its row
                 # Time counts from its first sample, subtracted before scaling so that no digit is lost.
                 found[name] = (values - values[0] if name == "time" else values) * factor
         return found

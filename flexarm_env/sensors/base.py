@@ -1,4 +1,4 @@
-"""What a sensor is: a signal with its name and unit, and the quantity of the arm that it measures."""
+"""The base of a sensor: a signal with its name and unit, and the quantity of the arm that it measures."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Sensor:
         gain_unit: of the gain; "" for a signal in the unit of the quantity.
         gain_spread: relative standard deviation that a fit assumes of the gain; 0 keeps the gain.
         defaults: of keys of the sensor's table in an arm file: {"filter": 0.001}, {"noise": 0.01}.
-        needs: what the arm must have: "beam", "motor_inertia", "hub_inertia" (or a beam), or its input, "current" or "voltage".
+        needs: required of the arm: "beam", "motor_inertia", "hub_inertia" (or a beam), or its input, "current" or "voltage".
         strain: whether it is a strain gage, on which the effects of gages act.
         motor_side: whether the signal grows with the gear ratio.
         order: place among the signals.
@@ -89,18 +89,18 @@ class Sensor:
 
     @staticmethod
     def reading(coordinates: Coordinates) -> Reading:
-        """Return the quantity that is measured, in SI units, of an arm or of stacked ones."""
+        """Express the quantity that is measured, in SI units, of an arm or of stacked ones."""
         raise NotImplementedError
 
     @classmethod
     def channel(cls, gain: float = 1.0, offset: float = 0.0, filter: float = 0.0, position: float = 0.0) -> Channel:
-        """Return the sensor as a plant takes it, with its settings in SI units."""
+        """Build the sensor's channel in a plant, with its settings in SI units."""
         return Channel(cls.reading, cls.strain, gain, offset, filter, position)
 
     @classmethod
     @functools.cache
     def settings(cls) -> Mapping[str, Parameter]:
-        """Return what the sensor's table in an arm file may hold, with this signal's units and defaults."""
+        """Describe the keys of the sensor's table in an arm file, with this signal's units and defaults."""
         units = {"gain": cls.gain_unit, "per_volt": f"{cls.unit}/V", **dict.fromkeys(("offset", "noise", "resolution"), cls.unit)}
         spreads = {"gain": cls.gain_spread}
         return {
@@ -112,7 +112,7 @@ class Sensor:
 
     @classmethod
     def offset_parameter(cls) -> Parameter:
-        """Return the parameter of the effect `sensor_offset` for this signal."""
+        """Describe the parameter of the effect `sensor_offset` for this signal."""
         typical = OFFSET * cls.typical if cls.typical_offset is None else cls.typical_offset
         largest = LARGEST_OFFSET * cls.typical if cls.largest_offset is None else cls.largest_offset
         return Parameter(
@@ -121,12 +121,12 @@ class Sensor:
 
     @classmethod
     def range_end(cls) -> float:
-        """Return the largest reading, for the thesis's arm, in the signal's unit."""
+        """Estimate the largest reading, for the thesis's arm, in the signal's unit."""
         return RANGE * cls.typical if cls.largest is None else cls.largest
 
 
 class StrainGage(Sensor):
-    """A strain gage, whose voltage is its gain times the bending moment at its position (thesis section 3.3)."""
+    """A strain gage; its voltage is its gain times the bending moment at its position (thesis section 3.3)."""
 
     unit = "V"
     typical = 2.0

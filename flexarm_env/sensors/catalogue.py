@@ -16,7 +16,7 @@ from flexarm_env.sensors.checks import checked
 
 @lru_cache(maxsize=1)
 def known_sensors() -> Mapping[str, type[Sensor]]:
-    """Return the sensors by the name of their signal, in the usual order of the signals."""
+    """Collect the sensors by the name of their signal, in the usual order of the signals."""
     package = importlib.import_module("flexarm_env.sensors")
     found: list[type[Sensor]] = []
     for module in pkgutil.iter_modules(package.__path__):

@@ -9,15 +9,15 @@ from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.parameters import INPUTS, NEEDS, SENSOR
 from flexarm_env.sensors.base import Sensor
 
-#: Names that a signal cannot have: other columns of recordings, and what effects may need.
+#: Names that a signal cannot have: other columns of recordings, and names in the needs of effects.
 TAKEN = ("time", "reference", "strain", *INPUTS, *NEEDS)
 
 
 def checked(sensor: type[Sensor]) -> type[Sensor]:
-    """Return the sensor if it is whole.
+    """Check that a sensor is whole, and return it.
 
     Raises:
-        InputError: for what it lacks, or what cannot be as it is.
+        InputError: for an attribute that is missing or impossible.
     """
     where = f"sensor {sensor.__name__}"
     for attribute in ("name", "unit", "label"):

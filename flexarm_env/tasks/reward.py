@@ -116,7 +116,7 @@ class RewardTerm:
             raise InputError(f"reward term '{self.name}' returns {value!r}; return a number")
 
     def _names(self) -> dict[str, Any]:
-        """What the function uses from outside, by name."""
+        """Global and enclosing variables of the function, by name."""
         outside = inspect.getclosurevars(self.function)
         return {**outside.globals, **outside.nonlocals}
 

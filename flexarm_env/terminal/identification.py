@@ -30,7 +30,7 @@ def fit(arm: Arm, recordings: Sequence[Recording], seed: int) -> Fit:
 
 def add(effect: str, arm: Arm, recordings: Sequence[Recording], seed: int) -> Addition:
     """Add an effect and refit."""
-    arm.with_effect(effect)  # refuses what cannot be added before a bar shows
+    arm.with_effect(effect)  # refuses an impossible effect before a bar shows
     with progress(f"adding {effect}") as bar:
         return flexarm_env.add(effect, arm, list(recordings), progress=bar, seed=seed)
 

@@ -89,12 +89,12 @@ def make_folder(folder: Path, *names: str) -> None:
 
 
 def discard_stdout() -> None:
-    """Discard what is printed from now on, because the reader of stdout has left. Python would complain when it shuts down."""
+    """Discard all output from now on, because the reader of stdout has left. Python would complain when it shuts down."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
 def _plain(value: Any) -> Any:
-    """Convert a value to what JSON can hold."""
+    """Convert a value to JSON's types."""
     if isinstance(value, Mapping):
         return {str(key): _plain(entry) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):

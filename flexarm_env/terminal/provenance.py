@@ -50,7 +50,7 @@ def command_line(
 
 
 def commit() -> str | None:
-    """Return the commit of this source tree, with "+" if files differ from it; None where it is no checkout."""
+    """Find the commit of this source tree, with "+" if files differ from it; None where it is no checkout."""
     here = Path(__file__).resolve().parent.parent
 
     def git(*arguments: str) -> str:

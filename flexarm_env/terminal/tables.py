@@ -26,7 +26,7 @@ LONGEST_LINE = 40
 
 
 class _Console(Console):
-    """A console whose reader may leave: the files that a command writes after its tables are written all the same."""
+    """A console with a reader that may leave: the files that a command writes after its tables are written all the same."""
 
     def on_broken_pipe(self) -> None:
         self.quiet = True

@@ -79,7 +79,7 @@ class Calibrator:
         return found if after.windows <= before.windows else self.calibrate(self.nominal, levels=())
 
     def choose_hold_out(self) -> tuple[Calibrator, Calibration]:
-        """Hold out less where the calibrated constants show that what the arm lacks appears late in the recordings.
+        """Hold out less where the calibrated constants show a missing effect that appears late in the recordings.
 
         Returns:
             A calibrator of the dataset so held out, and its calibration of the constants.
@@ -139,7 +139,7 @@ class Calibrator:
         return found
 
     def calibrate_on_all_data(self, found: Calibration) -> Calibration:
-        """Continue a calibration on all of the data and refine it: what is kept once nothing is left to judge."""
+        """Continue a calibration on all of the data and refine it: the final result, once no choice of model is left."""
         numbers, parameters = self.settings.calibrating, found.parameters
         objective = objective_at(found.arm, self.dataset.nothing_held_out(), parameters, found.objective.torque_noise)
         objective = objective.weighted_by(found.arm, narrow_priors=False)

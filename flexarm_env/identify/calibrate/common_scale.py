@@ -43,8 +43,8 @@ def best_scale(objective: Objective, x: Floats, powers: NDArray[np.int64]) -> tu
     """Move x to the scale of least cost; also give the cost's curvature along the scale's logarithm.
 
     Args:
-        objective: whose priors and residual count.
-        x: where a fit ended (x,).
+        objective: gives the priors and the residual.
+        x: end of a fit (x,).
         powers: see `force_powers`.
     """
 
@@ -72,8 +72,8 @@ def scale_deviation(objective: Objective, x: Floats, powers: NDArray[np.int64]) 
     off by one standard deviation of its prior, stands for the little evidence of so few.
 
     Args:
-        objective: whose priors and residual count.
-        x: where a fit ended (x,), on its best scale.
+        objective: gives the priors and the residual.
+        x: end of a fit (x,), on its best scale.
         powers: see `force_powers`.
     """
     if not powers.any():

@@ -62,7 +62,7 @@ def _scatter(objective: Objective, calibration: Calibration, powers: NDArray[np.
     """Estimate the variance of each x (x,) from the residual, but for the common scale of forces.
 
     By differences as wide as the fit's and by narrow ones, whichever gives more. Wide ones show motion where values that change
-    together leave none. Narrow ones show what sticking hides.
+    together leave none. Narrow ones show changes that sticking covers.
     """
     settings, x = objective.dataset.settings, calibration.solution.x
     prior = objective.parameters.priors

@@ -174,7 +174,7 @@ def _secant_correction(missed: Floats, step: Floats, weights: Floats) -> Floats:
 
 
 def covariance(j: Floats, residual: Floats, prior: Floats, block: int) -> Floats:
-    """Estimate the covariance (x, x) of a fit whose residual need not be white.
+    """Estimate the covariance (x, x) of a fit with a residual that need not be white.
 
     Sandwich of the normal equations around the scatter of the gradient summed over blocks of `block` rows (Newey and West,
     Econometrica 55 (1987) 703, with blocks for lags).

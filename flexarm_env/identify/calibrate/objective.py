@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Weights:
-    """What errors and values count for.
+    """Weights of errors and values.
 
     Attributes:
         sigma: (runs, signals) by which errors are divided, SI units.
@@ -57,9 +57,9 @@ class Objective:
     """The cost of a calibration: whitened replay errors and priors.
 
     Attributes:
-        arm: whose values the parameters replace.
+        arm: the parameters replace its values.
         dataset: the recordings.
-        parameters: what is fitted.
+        parameters: the fitted ones.
         torque_noise: process noise [Nm]; 0 for free replays.
         weights: of errors and values.
         observers: gains of the corrected replays.
@@ -99,7 +99,7 @@ class Objective:
         Without that a search strays to constants that no machine has.
 
         Args:
-            arm: whose errors are the measure.
+            arm: its errors are the measure.
             narrow_priors: whether the priors of constants are narrowed so.
         """
         dataset = self.dataset

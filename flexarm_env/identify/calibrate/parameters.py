@@ -153,7 +153,7 @@ def effect_parameters(arm: Arm, name: str, dataset: Dataset) -> FitParameters:
 
 
 def known_effect_parameters(arm: Arm, name: str, nominal: Arm, dataset: Dataset) -> FitParameters:
-    """List the parameters of an effect that the nominal arm has as well, whose values are the centres of the priors."""
+    """List the parameters of an effect that the nominal arm has as well; its values there are the centres of the priors."""
     return _effect_parameters(arm, name, dataset, nominal)
 
 

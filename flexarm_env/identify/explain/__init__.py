@@ -1,1 +1,1 @@
-"""Where a model fails, what drives it, and how small an effect the recordings would show."""
+"""Where a model fails, the driver of its error, and the smallest effect that the recordings would show."""

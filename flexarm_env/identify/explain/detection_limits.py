@@ -40,8 +40,8 @@ class DetectionLimit:
 def detection_limits(calibrator: Calibrator, found: Calibration) -> dict[str, DetectionLimit]:
     """Estimate the size of each effect that the arm lacks at which it would just be accepted.
 
-    The measure is the rise of the error in windows, less what the constants could take over of it: the share of its change of the
-    innovations that lies along their slopes.
+    The measure is the rise of the error in windows, less the part that the constants could take over: the share of the
+    effect's change of the innovations that lies along their slopes.
 
     Args:
         calibrator: of the recordings.

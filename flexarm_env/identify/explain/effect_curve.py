@@ -20,12 +20,12 @@ UNITS = {"speed": "rad/s", "angle": "rad", "time": "s"}
 
 @dataclass(frozen=True)
 class EffectCurve:
-    """Torque against what drives it.
+    """Torque against its driver.
 
     Attributes:
-        effect: the catalogue's name; "" for what nothing explains.
+        effect: the catalogue's name; "" for a torque that no effect explains.
         driver: "speed" [rad/s], "angle" [rad] or "time" [s] of the hub.
-        quantity: what the torque is, in words.
+        quantity: the torque's name in words.
         x: (points,) the driver at single samples.
         y: (points,) the data's estimate there [Nm].
         bins: (bins,) the driver.

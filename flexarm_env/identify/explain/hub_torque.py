@@ -48,7 +48,7 @@ def hub_torque(arm: Arm, recordings: Sequence[Recording], settings: Settings = S
     """Estimate the torque on the hub, sample by sample, with no assumption on its law but that it is a random walk.
 
     A Kalman smoother (Rauch, Tung, Striebel, AIAA Journal 3 (1965) 1445) in its steady state, on the arm with a free hub
-    and a random torque on it. Where the hub sticks, the torque is what holds it.
+    and a random torque on it. Where the hub sticks, it is the torque that holds the hub.
 
     Args:
         arm: for its drive, inertias, beam and sensors; effects that act on the hub are left out.

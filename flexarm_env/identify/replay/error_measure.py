@@ -143,7 +143,7 @@ def error_measure(arm: Arm) -> ErrorMeasure:
 
 
 def score(arm: Arm, dataset: Dataset, held_out: bool = True) -> Score:
-    """Measure the errors of an arm on what was held out, or on what was fitted."""
+    """Measure the errors of an arm on the held-out part of the recordings, or on the fitted part."""
     return error_measure(arm).score(arm, dataset, held_out)
 
 

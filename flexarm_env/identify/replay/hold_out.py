@@ -1,4 +1,4 @@
-"""Hold out less where what the model lacks shows only in the part that was held out."""
+"""Hold out less where a missing effect shows only in the held-out part."""
 
 from __future__ import annotations
 

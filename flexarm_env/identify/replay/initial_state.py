@@ -1,4 +1,4 @@
-"""The initial state of a recording: what its first samples show without a model, and the state that fits a plant to them."""
+"""The initial state of a recording: estimated from its first samples without a model, and fitted to them with a plant."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ def window_replay(plant: Plant, run: Run, dataset: Dataset, observers: Sequence[
 
 
 def window_observers(arm: Arm, plant: Plant, dataset: Dataset, levels: Sequence[float] | None = None) -> list[Floats]:
-    """Compute the kernel's gains of the replays whose states windows start from.
+    """Compute the kernel's gains of the replays that give windows their initial states.
 
     Args:
         arm: the model.

@@ -94,7 +94,7 @@ class ThresholdCriteria:
     def measure(self, scores: Sequence[Score]) -> Measure:
         """Choose the excess error in windows where a model comes near the noise.
 
-        Otherwise the free run counts as much, since it shows what holds for long; and alone, where even windows are far off.
+        Otherwise the free run counts as much, since it shows the long-term error; and alone, where even windows are far off.
         """
         best = min(s.windows for s in scores)
         if self.judges_free_run and best > self.settings.errors.far_off:
@@ -116,7 +116,7 @@ class ThresholdCriteria:
     def explains(self, found: Model) -> bool:
         """Whether a model leaves nothing to explain, or explains windows and free runs alike, as true effects do.
 
-        What imitates another effect often does so in only one of the two, or stops short of the noise.
+        An imitation of another effect often succeeds in only one of the two, or stops short of the noise.
         """
         score, errors, shares = found.score, self.settings.errors, self.settings.selecting
         share = shares.least_total_gain if score.windows > errors.far_off else shares.least_total_gain_near
@@ -175,11 +175,11 @@ class ThresholdCriteria:
         return rank(rival) < (1.0 - least) * rank(now)
 
     def contender_difference(self, removed: float) -> float:
-        """Compute a share of what was removed."""
+        """Compute a share of the removed excess."""
         return self.settings.selecting.same_gain * removed
 
     def equivalent_difference(self, removed: float, left: float) -> float:
-        """Compute a share of what was removed, but no more than what is left."""
+        """Compute a share of the removed excess, but no more than the remaining one, or `same_excess` if larger."""
         return min(self.contender_difference(removed), max(left, self.settings.selecting.same_excess))
 
     def equivalence_level(self, best: Score, measure: Measure) -> float:

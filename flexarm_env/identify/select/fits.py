@@ -76,7 +76,7 @@ def fit_with_all_constants(
 
 
 def fit_in_place(calibrator: Calibrator, without: Arm, effects: Sequence[str], progress: Progress) -> list[Model]:
-    """Calibrate an arm with each of some effects, started where it explains most of what the arm leaves."""
+    """Calibrate an arm with each of some effects, started where it explains most of the arm's residual."""
     models = []
     for model in calibrator.workers.map([(_fit_from_signature, (calibrator, effect, without)) for effect in effects]):
         models.append(model)
@@ -85,7 +85,7 @@ def fit_in_place(calibrator: Calibrator, without: Arm, effects: Sequence[str], p
 
 
 def fit_with_companion(calibrator: Calibrator, models: Sequence[Model], progress: Progress) -> list[Model]:
-    """Calibrate models with the catalogue's companion beside each: alone it hides what others explain, and they hide it."""
+    """Calibrate models with the catalogue's companion beside each: alone, either masks the other's share."""
     known, companion = calibrator.nominal.known, calibrator.nominal.known.pairing
     others = [m for m in models if m.effects != (companion,)]
     shares = calibrator.workers.map([(_share_of_companion, (calibrator, m.calibration)) for m in others])
@@ -137,6 +137,6 @@ def _fit_from_signature(calibrator: Calibrator, effect: str, without: Arm) -> Mo
 
 
 def _share_of_companion(calibrator: Calibrator, found: Calibration) -> float:
-    """Compute the share of what a calibration leaves that looks like the companion."""
+    """Compute the share of a calibration's residual that looks like the companion."""
     companion = found.arm.known.pairing
     return sum(signature.explained for signature in signatures(baseline(found, calibrator.dataset), companion))

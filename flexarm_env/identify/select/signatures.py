@@ -1,4 +1,4 @@
-"""Signatures of effects: the change of the residual that each would make, with what constants can explain projected out."""
+"""Signatures of effects: the change of the residual that each would make, orthogonal to the constants' Jacobian."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Baseline:
         x: the arm's values (x,).
         residual: (rows,).
         jacobian: of the arm's values (rows, x).
-        orthonormal: (rows, x) basis of what the values can explain under their priors.
+        orthonormal: (rows, x) basis of the changes that the values can make under their priors.
     """
 
     objective: Objective
@@ -49,7 +49,7 @@ class Baseline:
         return self.objective.dataset.settings.screening
 
     def unexplained(self, residual: Floats) -> Floats:
-        """Project out of a residual (rows,) what the constants could explain."""
+        """Project a residual (rows,) onto the complement of the changes that the constants could make."""
         left: Floats = residual - self.orthonormal @ (self.orthonormal.T @ residual)
         return left
 
@@ -125,7 +125,7 @@ def signatures(base: Baseline, effect: str) -> list[Signature]:
 
 
 def _secant(base: Baseline, effect: str, start: dict[str, float]) -> Signature:
-    """Extrapolate what an effect would explain if its change of the residual grew in proportion to its size."""
+    """Extrapolate an effect's explained share, as if its change of the residual grew in proportion to its size."""
     change = base.unexplained(base.change(effect, start))
     left = base.unexplained(base.residual)
     power, total = float(change @ change), float(left @ left)

@@ -1,4 +1,4 @@
-"""Effects added one by one, whatever each gains alone: where two are missing, neither may stand out."""
+"""Effects added one by one, however little each gains alone: where two are missing, neither may stand out."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ def extend_chain(
 ) -> tuple[Model, ...]:
     """Extend a chain of models, each of one more effect, until one is fully explained or no effect fits better than none.
 
-    Each step takes the effect that fits best beside the others, as stepwise regression does. Some effects imitate what no
-    catalogue holds, too, but not down to the noise.
+    Each step takes the effect that fits best beside the others, as stepwise regression does. Some effects also imitate
+    physics outside the catalogue, but not down to the noise.
 
     Args:
         calibrator: of the recordings.

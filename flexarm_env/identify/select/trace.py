@@ -120,7 +120,7 @@ class Trace:
         return {"": self.model.arm}
 
     def as_json(self) -> list[dict[str, Any]]:
-        """Convert to plain data: of each step its action, effects, errors before and after, and what it tried."""
+        """Convert to plain data: of each step its action, effects, errors before and after, and tried effects."""
         rows = []
         for before, step in zip((self.steps[0], *self.steps), self.steps, strict=False):
             rows.append(

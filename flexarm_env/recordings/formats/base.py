@@ -40,7 +40,7 @@ class Format:
             columns: its column map, if there is one.
 
         Raises:
-            InputError: for a column map that is missing or of another format, and for what the format cannot read.
+            InputError: for a column map that is missing or of another format, and for content that the format cannot read.
         """
         use = " or ".join(f"'{key}'" for key in self.keys)
         if columns is None and self.needs_map:

@@ -64,7 +64,7 @@ def _check_matlab(content: bytes) -> None:
     """Raise ValueError for damage to a version 5 file that would make scipy's reader crash the process.
 
     scipy looks up the type code of a data element without checking it (scipy pull request 25349), and a file
-    whose end is zeros, as a full disk leaves it, has codes that do not exist.
+    that ends in zeros, as a full disk leaves it, has codes that do not exist.
     """
     if 0 in content[:4] or content[124:128] in (b"\x00\x02IM", b"\x02\x00MI"):
         return  # version 4, or 7.3, which scipy refuses

@@ -135,7 +135,7 @@ def _hint(text: str, texts: Sequence[str]) -> str:
 
 
 def _check_header(header: Sequence[str], row: int, labels: dict[int, str], width: int, delimiter: str) -> None:
-    """Refuse a header by whose cells columns cannot be counted. Empty ones may end it, and nameless columns the rows."""
+    """Refuse a header with cells by which columns cannot be counted. Empty ones may end it, and nameless columns the rows."""
     named = len(header)
     while named and not header[named - 1].strip():
         named -= 1
