@@ -1,0 +1,234 @@
+"""One recording in several files, one signal each: which files belong together, and their rows put in one order of time."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.errors import InputError
+from flexarm_env.parameters import INPUTS
+from flexarm_env.recordings.columns import ColumnMap, Source, check_names, part_names, quantity_of
+from flexarm_env.recordings.files import PathLike, files_of, read_bytes
+from flexarm_env.recordings.formats.catalogue import format_of
+from flexarm_env.recordings.messages import file_error, quoted
+
+Floats = NDArray[np.float64]
+
+#: Readings nearer to another sample than this share of the shortest usual step are of the same time.
+SAME_TIME = 0.01
+
+
+@dataclass(frozen=True)
+class Part:
+    """One file of a joined recording: its times (n,) [s], on the clock of the file, and its columns (n,) in SI."""
+
+    time: Floats
+    columns: dict[str, Floats]
+
+
+def recording_files(paths: Iterable[PathLike], columns: ColumnMap | None = None) -> list[Path]:
+    """List the file of each recording in files and folders; that with the command, where it is in several.
+
+    Args:
+        paths: as given.
+        columns: the map that names the other files; without one each file is a recording.
+
+    Raises:
+        InputError: as `files_of`, and for a file that belongs to no recording of the map.
+    """
+    if columns is None or not columns.joins:
+        return files_of(paths)
+    found: list[Path] = []
+    for path in map(Path, paths):
+        inside = _inside(path, columns) if path.is_dir() else [path]
+        found += [file for file in (_command_file(one, columns) for one in inside) if file not in found]
+    return files_of(dict.fromkeys(found))
+
+
+def run_name(columns: ColumnMap, path: Path) -> str:
+    """Find the text for which the "*" of the files' names stands in the recording of a file, "" if for none."""
+    pattern = _command_pattern(columns)
+    return path.stem if pattern == "*" else _star(pattern, path.name)
+
+
+def _command_pattern(columns: ColumnMap) -> str:
+    """Find the name of the file that has the command; "*" where it has no name of its own."""
+    return columns.sources[check_names(tuple(columns.sources))].file or "*"
+
+
+def _other_patterns(columns: ColumnMap) -> list[str]:
+    """List the names of the other files."""
+    return sorted({source.file for source in columns.sources.values()} - {"", _command_pattern(columns)})
+
+
+def _inside(folder: Path, columns: ColumnMap) -> list[Path]:
+    """List the files with commands in a folder."""
+    pattern, others = _command_pattern(columns), _other_patterns(columns)
+    files = files_of([folder]) if pattern == "*" else sorted(file for file in folder.glob("*") if _fits(pattern, file.name))
+    found = [file for file in files if not any(_fits(other, file.name) for other in others)]
+    if not found:
+        raise file_error(folder, f"has no file {quoted(pattern)}, which [columns] names; name another folder, or correct it")
+    return found
+
+
+def _command_file(file: Path, columns: ColumnMap) -> Path:
+    """Find the file with the command that belongs to a file."""
+    pattern, others = _command_pattern(columns), _other_patterns(columns)
+    other = next((one for one in others if _fits(one, file.name)), None)
+    if other is None:
+        if not _fits(pattern, file.name):
+            names = ", ".join(map(quoted, (pattern, *others)))
+            raise file_error(file, f"is none of the files that [columns] names, {names}; name one of those")
+        return file
+    name = _star(other, file.name)
+    if pattern != "*":
+        return file.with_name(pattern.replace("*", name))
+    twins = [one for one in sorted(file.parent.glob("*")) if one.stem == name]
+    if len(twins) != 1:
+        raise file_error(
+            file, f"belongs to a recording '{name}', of which there are {len(twins)} files; name that with the command"
+        )
+    return twins[0]
+
+
+def _fits(pattern: str, name: str) -> bool:
+    prefix, star, suffix = pattern.partition("*")
+    whole = len(name) >= len(prefix) + len(suffix) and name.startswith(prefix) and name.endswith(suffix)
+    return whole if star else name == pattern
+
+
+def _star(pattern: str, name: str) -> str:
+    prefix, star, suffix = pattern.partition("*")
+    return name[len(prefix) : len(name) - len(suffix)] if star else ""
+
+
+def read_joined(path: Path, columns: ColumnMap, gains: Mapping[str, float]) -> tuple[dict[str, Floats], dict[str, float], str]:
+    """Read the recording of a file with a command, and of the other files that belong to it.
+
+    Args:
+        path: the file with the command.
+        columns: the map that names the others.
+        gains: SI per volt, by signal.
+
+    Returns:
+        Columns (n,) in SI by name, conditions, and the checksum of the files.
+
+    Raises:
+        InputError: for a file that is absent or cannot be read, and for times that do not overlap.
+    """
+    name = run_name(columns, path)
+    main = _command_pattern(columns)
+    parts: list[Part] = []
+    conditions: dict[str, float] = {}
+    checksum = hashlib.sha256()
+    for pattern, sources in _by_file(columns).items():
+        file = path if pattern in ("", main) else path.with_name(pattern.replace("*", name))
+        try:
+            content = read_bytes(file)
+            table = format_of(file).table(content, replace(columns, sources=sources))
+            arrays = table.in_si(gains)
+            start = table.first_time(gains)
+        except InputError as error:
+            raise error if file == path else InputError(f"{file.name}: {error}") from None
+        checksum.update(content)
+        conditions |= table.conditions
+        parts.append(Part(start + arrays.pop("time"), arrays))
+    columns_found = join(parts)
+    for signal, values in columns_found.items():
+        if np.isnan(values).any():
+            raise InputError(f"'{signal}' has no sample at some times of the command; record the files at equal times")
+    return columns_found, conditions, checksum.hexdigest()
+
+
+def _by_file(columns: ColumnMap) -> dict[str, dict[str, Source]]:
+    """Group the sources by file, the command's first, each with its time."""
+    command = columns.sources[check_names(tuple(columns.sources))]
+    common = {name: source for name, source in columns.sources.items() if quantity_of(name) == "time"}
+    groups: dict[str, dict[str, Source]] = {command.file: {}}
+    for name, source in columns.sources.items():
+        if name not in common:
+            own = dict(zip(part_names("time", len(source.time)), source.time, strict=True)) if source.time else common
+            groups.setdefault(source.file, {}).update({**own, name: source})
+    return groups
+
+
+def join(parts: list[Part]) -> dict[str, Floats]:
+    """Put the rows of files in one order of time, without a reading moved, repeated or made up.
+
+    The command of the first part and a reference hold from one of their samples to the next, as a drive holds them. Where a
+    signal has no sample it is NaN: it was not measured then. Samples before the first command and after the last are left out.
+    Times that differ by less than `SAME_TIME` of the shortest usual step are one.
+
+    Args:
+        parts: the first with the command.
+
+    Returns:
+        Columns (n,) by name, time among them.
+
+    Raises:
+        InputError: for times that do not rise, or that do not overlap with those of the command.
+
+    Examples:
+        >>> import numpy as np
+        >>> from flexarm_env.recordings.joined import Part, join
+        >>> command = Part(np.array([0.0, 1.0, 2.0]), {"current": np.array([5.0, 6.0, 7.0])})
+        >>> angle = Part(np.array([0.5, 2.0]), {"arm_angle": np.array([0.1, 0.2])})
+        >>> found = join([command, angle])
+        >>> found["time"].tolist(), found["current"].tolist(), found["arm_angle"].tolist()
+        ([0.0, 0.5, 1.0, 2.0], [5.0, 5.0, 6.0, 7.0], [nan, 0.1, nan, 0.2])
+    """
+    for part in parts:
+        _check_times(part)
+    command = parts[0].time
+    near = SAME_TIME * min(float(np.median(np.diff(part.time))) for part in parts)
+    time = command
+    for part in parts[1:]:
+        inside = part.time[_inside_run(part.time, command, near)]
+        if not inside.size:
+            raise InputError(
+                f"'{next(iter(part.columns))}' is measured from {part.time[0]:.9g} to {part.time[-1]:.9g} s, the command from"
+                f" {command[0]:.9g} to {command[-1]:.9g} s; files of one recording need one clock"
+            )
+        time = np.sort(np.concatenate([time, inside[_distance(inside, time) > near]]))
+    columns = {"time": time}
+    for part in parts:
+        rows = _inside_run(part.time, command, near)
+        places = _nearest(part.time[rows], time)
+        held = np.clip(np.searchsorted(part.time, time + near, side="right") - 1, 0, None)
+        for name, values in part.columns.items():
+            if name in (*INPUTS, "reference"):
+                columns[name] = values[held]
+                continue
+            columns[name] = np.full(len(time), np.nan)
+            columns[name][places] = values[rows]
+    return columns
+
+
+def _inside_run(times: Floats, command: Floats, near: float) -> NDArray[np.bool_]:
+    return (times >= command[0] - near) & (times <= command[-1] + near)
+
+
+def _check_times(part: Part) -> None:
+    name = next(iter(part.columns))
+    if len(part.time) < 2:
+        raise InputError(f"the file of '{name}' has {len(part.time)} samples; it needs at least two")
+    back = np.flatnonzero(~(np.diff(part.time) > 0))
+    if back.size:
+        raise InputError(
+            f"the time of '{name}' does not rise after its sample {back[0] + 1}, {part.time[back[0]]:.9g} s; correct it"
+        )
+
+
+def _nearest(times: Floats, among: Floats) -> NDArray[np.intp]:
+    """Find for each time the index of the nearest of others that rise."""
+    after = np.clip(np.searchsorted(among, times), 1, len(among) - 1)
+    return np.where(times - among[after - 1] <= among[after] - times, after - 1, after)
+
+
+def _distance(times: Floats, among: Floats) -> Floats:
+    return np.abs(times - among[_nearest(times, among)])
