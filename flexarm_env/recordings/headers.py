@@ -34,7 +34,7 @@ def header_sources(header: Sequence[str], layout: ColumnMap, row: str = "") -> d
             if texts.count(place.strip()) > 1:
                 raise InputError(f"{at}column '{name}': the header has {quoted(place)} twice; use 'index'")
             if place.strip() not in texts:
-                raise InputError(f"{at}column '{name}': no {quoted(place)} in the header{_hint(place, texts)}")
+                raise InputError(f"{at}column '{name}': no {quoted(place)} in the header{absence(place, texts)}")
             place = texts.index(place.strip())
         twin = next((other for other in sources if sources[other].place == place), None)
         if twin:
@@ -53,7 +53,8 @@ def _refined(header: Sequence[str], layout: ColumnMap, at: str) -> dict[str, Sou
     return own
 
 
-def _hint(text: str, texts: Sequence[str]) -> str:
+def absence(text: str, texts: Sequence[str]) -> str:
+    """Say what a header has in place of a text: the nearest, or the first ones."""
     if len(texts) == 1:
         return f", which is one column, {quoted(texts[0])}: is the delimiter right?"
     near = did_you_mean(text, [other[:40] for other in texts[:20]])

@@ -111,7 +111,7 @@ def _element(value: Variable, step: re.Match[str], place: str) -> Variable:
     """Take one element of a struct, with (), or the content of one of a cell, with {}."""
     numbers = [step[group] for group in ((2, 3) if step[0][0] == "(" else (4, 5)) if step[group] is not None]
     if step[0][0] != {"cell": "{", "struct": "("}.get(value.kind):
-        raise InputError(f"{quoted(place)} is {describe(value)}, which {step[0]} does not fit{_advice(value, place)}")
+        raise InputError(f"{quoted(place)} is {describe(value)}, which {_short(step[0])} does not fit{_advice(value, place)}")
     if ":" in numbers:
         raise InputError(f"{quoted(place + step[0])}: take one element, such as (1)")
     element = _position([int(number) for number in numbers], value.shape, place)
@@ -135,7 +135,7 @@ def _part(numbers: NDArray[np.float64], step: re.Match[str], place: str) -> NDAr
     """Take a row (i,:), a column (:,j), all (:) or one element of numbers."""
     shape = "×".join(map(str, numbers.shape))
     if step[0][0] != "(" or numbers.ndim != 2:
-        raise InputError(f"{quoted(place)} is {shape} numbers, which {step[0]} does not fit")
+        raise InputError(f"{quoted(place)} is {shape} numbers, which {_short(step[0])} does not fit")
     if step[3] is None:
         return numbers.reshape(-1, order="F") if step[2] == ":" else _at(numbers.reshape(-1, 1, order="F"), 0, step[2], place)
     for axis, text in enumerate((step[2], step[3])):

@@ -106,10 +106,14 @@ def _excel(lines: Sequence[str], layout: ColumnMap) -> tuple[ColumnMap, int]:
     found, skip = layout, layout.skip_rows
     if line is not None and not skip:
         if layout.delimiter not in (ColumnMap.delimiter, line[1]):
-            raise InputError(f"row 1: has {quoted(line[0])}, but [columns] has delimiter = {layout.delimiter!r}; leave it out there")
+            raise InputError(
+                f"row 1: has {quoted(line[0])}, but [columns] has delimiter = {layout.delimiter!r}; leave it out there"
+            )
         found, skip = replace(layout, delimiter=line[1]), 1
     if found.decimal == found.delimiter:
-        raise InputError(f"decimal and delimiter are both {found.decimal!r}; set delimiter = ';' or what the file has in [columns]")
+        raise InputError(
+            f"decimal and delimiter are both {found.decimal!r}; set delimiter = ';' or what the file has in [columns]"
+        )
     return found, skip
 
 
