@@ -11,6 +11,7 @@ from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import read_toml
 from flexarm_env.recordings.column_entries import PLACES, listed, read_sources, typed
 from flexarm_env.recordings.columns import UNITS, ColumnMap, Source, check_names, part_names
+from flexarm_env.recordings.messages import file_error
 
 _SETTINGS: dict[str, type] = {"delimiter": str, "header_prefix": str, "skip_rows": int, "decimal": str}
 
@@ -51,7 +52,7 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
     try:
         return _column_map(table)
     except InputError as error:
-        raise InputError(f"{path}: {error}") from None
+        raise file_error(path, error) from None
 
 
 def _column_map(table: Mapping[str, Any]) -> ColumnMap:

@@ -17,6 +17,5 @@ def quoted(text: str) -> str:
 
 def file_error(path: Path, what: object) -> InputError:
     """Make the error of a file. Characters of path or content that would break the line are escaped, long content is cut."""
-    text = str(what)
-    text = text if len(text) <= _LONGEST_MESSAGE else f"{text[: _LONGEST_MESSAGE - 3]}..."
-    return InputError("".join(c if c.isprintable() else repr(c)[1:-1] for c in f"{path}: {text}"))
+    place, text = ("".join(c if c.isprintable() else repr(c)[1:-1] for c in one) for one in (f"{path}: ", str(what)))
+    return InputError(place + (text if len(text) <= _LONGEST_MESSAGE else f"{text[: _LONGEST_MESSAGE - 3]}..."))
