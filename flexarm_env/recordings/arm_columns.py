@@ -74,7 +74,7 @@ def _found(columns: ColumnMap, texts: list[str]) -> dict[str, Source]:
     for name, source in columns.sources.items():
         place = numbers.get(str(source.place).strip()) if source.key == "column" else source.place
         if isinstance(place, int) and place < len(texts):
-            found[name] = Source(place, source.unit, source.sign, source.scale)
+            found[name] = replace(source, place=place, key="index")
     return found
 
 

@@ -10,6 +10,8 @@ from typing import Any
 from flexarm_env import units
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.recordings.columns import UNITS, Source
+from flexarm_env.recordings.corrections import SIGNAL_KEYS, TIME_KEYS, Corrections, read_corrections
+from flexarm_env.sensors import known_sensors
 
 PLACES: dict[str, type] = {"column": str, "index": int, "variable": str}
 _CONVERSION = ("unit", "sign", "scale")
@@ -34,13 +36,12 @@ def typed(key: str, value: Any, kind: type) -> Any:
     return units.as_float(value) if isinstance(value, int | float) and kind is float else value
 
 
-def read_sources(name: str, entry: Any, inner: bool = False) -> list[Source]:
+def read_sources(name: str, entry: Any) -> list[Source]:
     """Read one entry of a `[columns]` table: one source, or several whose columns are added.
 
     Args:
         name: of the quantity.
         entry: the value beside it.
-        inner: whether it is the time of an entry with a file of its own.
 
     Raises:
         InputError: for a key that does not exist, or a value that makes no sense.
@@ -48,7 +49,7 @@ def read_sources(name: str, entry: Any, inner: bool = False) -> list[Source]:
     where = f"[columns] {name}"
     if not isinstance(entry, Mapping):
         raise InputError(f"{where}: is {entry!r}; write {{column = 'header text', unit = '{UNITS[name]}'}}")
-    allowed = (*PLACES, *_CONVERSION, "row", *(("rate",) if name == "time" else ("time",)), *(() if inner else ("file",)))
+    allowed = _allowed_keys(name)
     for key in entry:
         if key not in allowed:
             raise InputError(f"{where}: unknown key {key!r}{did_you_mean(str(key), allowed)}")
@@ -67,7 +68,13 @@ def read_sources(name: str, entry: Any, inner: bool = False) -> list[Source]:
         return parts
     if "file" not in entry:
         raise InputError(f"{where}: has a time of its own, but no 'file' of its own; add it, or leave the time out")
-    return [replace(parts[0], time=tuple(read_sources("time", entry["time"], inner=True)))]
+    return [replace(parts[0], time=tuple(read_sources("time", entry["time"])))]
+
+
+def _allowed_keys(name: str) -> tuple[str, ...]:
+    if name == "time":
+        return (*PLACES, *_CONVERSION, *TIME_KEYS, "row", "rate")
+    return (*PLACES, *_CONVERSION, *(SIGNAL_KEYS if name in known_sensors() else ()), "row", "file", "time")
 
 
 def _key_of(name: str, entry: Mapping[str, Any]) -> str:
@@ -102,7 +109,15 @@ def _part(name: str, key: str, place: Any, unit: Any, entry: Mapping[str, Any]) 
         raise InputError(f"{where}: scale is {scale!r}; write a number that is not zero")
     row = _number_from_zero(name, "row", entry)
     cut = _number_from_zero(name, "index", entry) if key == "variable" else None
-    return Source(place, unit, int(sign), scale, key, row, cut, _file(name, entry))
+    return Source(place, unit, int(sign), scale, key, row, cut, _file(name, entry), corrections=_corrections(name, entry))
+
+
+def _corrections(name: str, entry: Mapping[str, Any]) -> Corrections:
+    """Read the corrections in the entry of one column."""
+    try:
+        return read_corrections(entry, UNITS[name])
+    except InputError as error:
+        raise InputError(f"[columns] {name}: {error}") from None
 
 
 def _number_from_zero(name: str, key: str, entry: Mapping[str, Any]) -> int | None:

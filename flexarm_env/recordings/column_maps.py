@@ -21,8 +21,8 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
 
     Each FlexArm name holds `column` (header text), `index` (0-based) or `variable` (a path such as "data.signals(2).values",
     with `row` or `index` of a matrix), with `unit`, and `sign` or `scale` if needed; `file` names another file that has it.
-    Entries that all lack a place refine FlexArm's own header. Beside them stand `delimiter`, `header_prefix`, `skip_rows`,
-    `decimal`.
+    Entries that all lack a place refine FlexArm's own header. A signal also has `ignore`, `range`, `repeats`, `wrap` and
+    `shift`, time `shift`. Beside them stand `delimiter`, `header_prefix`, `skip_rows`, `decimal`.
 
     Args:
         columns: the file, or the table.
@@ -39,7 +39,7 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
         ...     "arm_angle": {"column": "encoder", "unit": "deg", "sign": -1},
         ... }
         >>> load_columns(table).sources["arm_angle"]
-        Source(place='encoder', unit='deg', sign=-1, scale=1.0, key='column')
+        Source(place='encoder', unit='deg', sign=-1, scale=1.0, key='column', corrections=Corrections())
     """
     if isinstance(columns, ColumnMap):
         return columns

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from flexarm_env import units
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.parameters import INPUTS
+from flexarm_env.recordings.corrections import Corrections
 from flexarm_env.sensors import known_sensors
 
 UNITS = {"time": "s", **INPUTS, **{name: sensor.unit for name, sensor in known_sensors().items()}, "reference": "rad"}
@@ -33,6 +34,7 @@ class Source:
         cut: its column, from 0; None for all.
         file: name of the file that has it, in which "*" stands for the name of the run; "" for the file that is read.
         time: where that file has its time, whose parts are added; empty for the entry of the map.
+        corrections: of a signal, in SI; of time the shift of all signals.
     """
 
     place: str | int | float
@@ -44,6 +46,7 @@ class Source:
     cut: int | None = None
     file: str = ""
     time: tuple[Source, ...] = ()
+    corrections: Corrections = field(default_factory=Corrections)
 
 
 @dataclass(frozen=True)

@@ -88,6 +88,17 @@ def test_one_signal_beside_a_file_with_the_others(tmp_path: Path) -> None:
         assert found.signals["arm_angle"].tolist() == [2, 2, 2, 2]
 
 
+def test_a_slower_sensor_is_absent_between_its_readings(runs: Path) -> None:
+    table_file(runs / "one_angle.csv", "phi", [90.0, 180.0], STARTED + np.array([0.1, 0.5]))
+    (found,) = Recording.read_all(runs / "one_angle.csv", MAP)
+    assert np.allclose(found.time, [0, 0.1, 0.25, 0.5, 0.75], rtol=0, atol=1e-6)
+    assert found.command.tolist() == [0, 0, 0.001, 0.002, 0.003]
+    assert np.allclose(found.signals["arm_angle"], [np.nan, -np.pi / 2, np.nan, -np.pi, np.nan], equal_nan=True)
+    found.write(runs / "again.csv")
+    again = Recording.read(runs / "again.csv")
+    assert np.array_equal(again.signals["arm_angle"], found.signals["arm_angle"], equal_nan=True)
+
+
 def test_the_map_of_an_arm_may_name_files(runs: Path) -> None:
     arm_file = runs.parent / "A.toml"
     arm_file.write_text(

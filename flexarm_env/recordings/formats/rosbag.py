@@ -65,7 +65,7 @@ def _decoder(base: sqlite3.Connection, kind: str, defined: bool) -> Callable[[by
     types = library("rosbags.typesys", KIND)
     try:
         definition, _ = types.get_typestore(types.Stores.LATEST).generate_msgdef(kind, ros_version=2)
-    except KeyError:
+    except (KeyError, types.TypesysError):
         raise InputError(f"type {quoted(kind)} is defined neither in the bag nor by ROS; record it with MCAP storage") from None
     return ros2_decoder(kind, definition)
 

@@ -73,9 +73,7 @@ def _decoded(message: Message, number: int) -> Any:
 def _groups(columns: ColumnMap, topics: list[str]) -> dict[str, list[str]]:
     """Group the quantities of a map by topic."""
     if "time" not in columns.sources:
-        raise InputError(
-            "has a time for each message; give time = { variable = 'header.stamp' } or 'log_time' in place of a rate"
-        )
+        raise InputError("has a time for each message; name it by variable = 'header.stamp' or 'log_time', not a rate")
     if "time (2)" in columns.sources:
         raise InputError("column 'time': give one path, such as 'header.stamp', of which seconds and nanoseconds are read")
     groups: dict[str, list[str]] = {}
