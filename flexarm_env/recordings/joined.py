@@ -11,11 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.errors import InputError
-from flexarm_env.recordings.columns import ColumnMap, Source, check_names, part_names, quantity_of
+from flexarm_env.recordings.columns import UNITS, ColumnMap, Source, check_names, part_names, quantity_of
 from flexarm_env.recordings.files import PathLike, files_of, read_bytes
 from flexarm_env.recordings.formats.catalogue import format_of
 from flexarm_env.recordings.joining import Part, join
 from flexarm_env.recordings.messages import file_error, quoted
+from flexarm_env.recordings.table import Table
+from flexarm_env.sensors import known_sensors
 
 Floats = NDArray[np.float64]
 
@@ -96,8 +98,10 @@ def _star(pattern: str, name: str) -> str:
     return name[len(prefix) : len(name) - len(suffix)] if star else ""
 
 
-def read_joined(path: Path, columns: ColumnMap, gains: Mapping[str, float]) -> tuple[dict[str, Floats], dict[str, float], str]:
+def read_joined(path: Path, columns: ColumnMap, gains: Mapping[str, float]) -> tuple[Table, str]:
     """Read the recording of a file with a command, and of the other files that belong to it.
+
+    Signals are corrected as their entries say, on the times of their own files.
 
     Args:
         path: the file with the command.
@@ -105,29 +109,57 @@ def read_joined(path: Path, columns: ColumnMap, gains: Mapping[str, float]) -> t
         gains: SI per volt, by signal.
 
     Returns:
-        Columns (n,) in SI by name, conditions, and the checksum of the files.
+        The table in SI, and the checksum of the files.
 
     Raises:
-        InputError: for a file that is absent or cannot be read, and for times that do not overlap.
+        InputError: for a file that is absent or cannot be read, for conditions of two files that differ, and for times that do
+            not overlap.
     """
     name = run_name(columns, path)
     main = _command_pattern(columns)
     parts: list[Part] = []
     conditions: dict[str, float] = {}
     checksum = hashlib.sha256()
+    clock: float | None = None
     for pattern, sources in _by_file(columns).items():
         file = path if pattern in ("", main) else path.with_name(pattern.replace("*", name))
         try:
             content = read_bytes(file)
             table = format_of(file).table(content, replace(columns, sources=sources))
             arrays = table.in_si(gains)
-            start = table.first_time(gains)
+            first = table.first_time(gains)
+            clock = first if clock is None else clock
+            time = (first - clock) + arrays.pop("time")
+            _check_conditions(table.conditions, conditions)
         except InputError as error:
             raise error if file == path else InputError(f"{file.name}: {error}") from None
         checksum.update(content)
         conditions |= table.conditions
-        parts.append(Part(start + arrays.pop("time"), arrays))
-    return join(parts), conditions, checksum.hexdigest()
+        parts += _corrected(time, arrays, sources)
+    plain = {quantity: Source(quantity, UNITS[quantity]) for quantity in map(quantity_of, columns.sources)}
+    return Table(join(parts), plain, conditions), checksum.hexdigest()
+
+
+def _check_conditions(found: Mapping[str, float], others: Mapping[str, float]) -> None:
+    for name, value in found.items():
+        if others.get(name, value) != value:
+            raise InputError(f"condition '{name}' is {value:g}, but {others[name]:g} in another of its files; correct one")
+
+
+def _corrected(time: Floats, arrays: Mapping[str, Floats], sources: Mapping[str, Source]) -> list[Part]:
+    """Correct the columns of a file; those that are late by another time are parts of their own, with earlier times.
+
+    Args:
+        time: (n,) [s], from the first command.
+        arrays: (n,) in SI, by name.
+        sources: their entries, with those of time.
+    """
+    by_shift: dict[float, dict[str, Floats]] = {}
+    for name, values in arrays.items():
+        corrections = sources[name].corrections
+        shift = corrections.shift + sources["time"].corrections.shift if name in known_sensors() else 0.0
+        by_shift.setdefault(shift, {})[name] = replace(corrections, shift=0.0).apply(time, values)
+    return [Part(time - shift, columns) for shift, columns in by_shift.items()]
 
 
 def _by_file(columns: ColumnMap) -> dict[str, dict[str, Source]]:

@@ -14,6 +14,7 @@ Floats = NDArray[np.float64]
 
 #: Readings nearer to another sample than this share of the shortest usual step are of the same time.
 SAME_TIME = 0.01
+_HELD = (*INPUTS, "reference")
 
 
 @dataclass(frozen=True)
@@ -27,12 +28,12 @@ class Part:
 def join(parts: list[Part]) -> dict[str, Floats]:
     """Put the rows of parts in one order of time, without a reading moved, repeated or made up.
 
-    The command of the first part and a reference hold from one of their samples to the next, as a drive holds them. Where a
-    signal has no sample it is NaN: it was not measured then. Samples before the first command and after the last are left out.
-    Times that differ by less than `SAME_TIME` of the shortest usual step are one.
+    Command and reference hold from one of their samples to the next, as a drive holds them. Where a signal has no sample it is
+    NaN: it was not measured then. Samples before the first command or reference and after the last command are left out. Times
+    that differ by less than `SAME_TIME` of the shortest usual step are one.
 
     Args:
-        parts: the first with the command.
+        parts: one of them with the command.
 
     Returns:
         Columns (n,) by name, time among them.
@@ -51,10 +52,14 @@ def join(parts: list[Part]) -> dict[str, Floats]:
     """
     for part in parts:
         _check_times(part)
-    command = parts[0].time
+    held_parts = [part.time for part in parts if set(_HELD) & set(part.columns)]
+    command = next(part.time for part in parts if set(INPUTS) & set(part.columns))
+    command = command[command >= max(times[0] for times in held_parts)]
     near = SAME_TIME * min(float(np.median(np.diff(part.time))) for part in parts)
+    if len(command) < 2:
+        raise InputError("has fewer than two commands after the first reference; files of one recording need one clock")
     time = command
-    for part in parts[1:]:
+    for part in parts:
         inside = part.time[_inside_run(part.time, command, near)]
         if not inside.size:
             raise InputError(
@@ -68,7 +73,7 @@ def join(parts: list[Part]) -> dict[str, Floats]:
         places = _nearest(part.time[rows], time)
         held = np.clip(np.searchsorted(part.time, time + near, side="right") - 1, 0, None)
         for name, values in part.columns.items():
-            if name in (*INPUTS, "reference"):
+            if name in _HELD:
                 columns[name] = values[held]
                 continue
             columns[name] = np.full(len(time), np.nan)

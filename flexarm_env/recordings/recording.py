@@ -188,9 +188,9 @@ class Recording(Shown):
         path = Path(path)
         try:
             if layout is not None and layout.joins:
-                arrays, conditions, checksum = read_joined(path, layout, gains)
-                name = run_name(layout, path) or path.parent.name
-                recording = _recording(name, arrays, conditions, (), layout.sources)
+                table, checksum = read_joined(path, layout, gains)
+                name = run_name(layout, path) or path.resolve().parent.name
+                recording = _recording(name, table.values, table.conditions, (), table.sources)
             else:
                 content = read_bytes(path)
                 table = format_of(path).table(content, layout)

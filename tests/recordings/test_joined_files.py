@@ -99,6 +99,24 @@ def test_a_slower_sensor_is_absent_between_its_readings(runs: Path) -> None:
     assert np.array_equal(again.signals["arm_angle"], found.signals["arm_angle"], equal_nan=True)
 
 
+def test_corrections_hold_on_the_times_of_their_own_file(runs: Path) -> None:
+    table_file(runs / "one_angle.csv", "phi", [1, 1, 2, 2, 3, 3], STARTED + 0.2 + 0.1 * np.arange(6))
+    angle = {**MAP["arm_angle"], "unit": "rad", "sign": 1, "repeats": 2, "shift": "0.1 s", "ignore": [[0.55, 0.65]]}
+    (found,) = Recording.read_all(runs / "one_angle.csv", {**MAP, "arm_angle": angle})
+    measured = ~np.isnan(found.signals["arm_angle"])
+    assert found.signals["arm_angle"][measured].tolist() == [1, 2]
+    assert np.allclose(found.time[measured], [0.1, 0.3], rtol=0, atol=1e-6)
+    assert found.notes == (f"'arm_angle' was measured in 2 of {len(found)} rows",)
+
+
+def test_conditions_of_its_files_must_agree(runs: Path) -> None:
+    for name, mass in (("one_current.csv", 0.3), ("one_angle.csv", 0.3)):
+        (runs / name).write_text(f"# payload = {mass} kg\n" + (runs / name).read_text())
+    assert Recording.read(runs / "one_current.csv", MAP).conditions == {"payload": 0.3}
+    (runs / "one_angle.csv").write_text((runs / "one_angle.csv").read_text().replace("0.3 kg", "0.4 kg"))
+    assert "one_angle.csv: condition 'payload' is 0.4, but 0.3 in another of its files" in failure(runs / "one_current.csv")
+
+
 def test_the_map_of_an_arm_may_name_files(runs: Path) -> None:
     arm_file = runs.parent / "A.toml"
     arm_file.write_text(
@@ -123,7 +141,7 @@ def test_files_that_do_not_fit_together(runs: Path) -> None:
     assert "has no file '*_current.csv'" in failure(runs.parent)
     table_file(angle, "phi", [1, 2, 3], [0, 1, 2])
     message = failure(current)
-    assert message.startswith(f"{current}: 'arm_angle' is measured from 0 to 2 s, the command from 1.7e+09 to 1.7e+09 s")
+    assert message.startswith(f"{current}: 'arm_angle' is measured from -1.7e+09 to -1.7e+09 s, the command from 0 to 0.75 s")
     assert "one clock" in message
     table_file(angle, "phi", [1, 2, 3], STARTED + np.array([0, 0.25, 0.25]))
     assert "the time of 'arm_angle' does not rise after its sample 2" in failure(current)
@@ -150,6 +168,17 @@ def test_maps_of_files_are_checked(entry: dict[str, Any], words: str) -> None:
         load_columns({**MAP, "arm_angle": {"column": "phi", "unit": "deg", **entry}})
     with pytest.raises(InputError, match="no place in it"):
         load_columns({**MAP, "arm_angle": {"file": "*_a.csv", "unit": "deg"}})
+
+
+def test_a_reference_that_begins_later(runs: Path) -> None:
+    table = {**MAP, "reference": {"file": "*_goal.csv", "column": "goal", "unit": "rad"}}
+    table_file(runs / "one_goal.csv", "goal", [1.0, 2.0], STARTED + np.array([0.25, 0.5]))
+    recording = Recording.read(runs / "one_current.csv", table)
+    assert recording.reference is not None
+    assert recording.reference.tolist() == [1, 2, 2]
+    assert recording.command.tolist() == [0.001, 0.002, 0.003]
+    table_file(runs / "one_goal.csv", "goal", [1.0, 2.0], STARTED + np.array([0.75, 0.8]))
+    assert "fewer than two commands after the first reference" in failure(runs / "one_current.csv", table=table)
 
 
 steps = st.lists(st.floats(0.01, 1.0), min_size=2, max_size=12)

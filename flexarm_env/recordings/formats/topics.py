@@ -89,20 +89,19 @@ def _groups(columns: ColumnMap, topics: list[str]) -> dict[str, list[str]]:
 def _table(
     columns: ColumnMap, groups: dict[str, list[str]], times: dict[str, list[int | float]], rows: dict[str, list[list[float]]]
 ) -> Table:
-    """Put the messages of all topics in one order of time, that with the command first."""
+    """Put the messages of all topics in one order of time."""
     empty = next((topic for topic in groups if len(rows[topic]) < 2), None)
     if empty is not None:
         raise InputError(f"topic {quoted(empty)} has {len(rows[empty])} messages; it needs at least two")
     whole = all(isinstance(instants[0], int) for instants in times.values())
     factor = 1e-9 / units.factor(columns.sources["time"].unit, "s") if whole else 1.0
     first = min(instants[0] for instants in times.values())
-    order = sorted(groups, key=lambda topic: not {"current", "voltage"} & set(groups[topic]))
     parts = [
         Part(
             np.array([instant - first for instant in times[topic]], dtype=np.float64) * factor,
             dict(zip(groups[topic], np.array(rows[topic], dtype=np.float64).T, strict=True)),
         )
-        for topic in order
+        for topic in groups
     ]
     return Table(join(parts), dict(columns.sources))
 
