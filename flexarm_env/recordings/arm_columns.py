@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
 from flexarm_env.errors import InputError
@@ -63,7 +64,7 @@ def _found(columns: ColumnMap, texts: list[str]) -> dict[str, Source]:
     for name, source in columns.sources.items():
         place = numbers.get(str(source.place).strip()) if source.key == "column" else source.place
         if isinstance(place, int) and place < len(texts):
-            found[name] = Source(place, source.unit, source.sign, source.scale)
+            found[name] = replace(source, place=place, key="index")
     return found
 
 

@@ -12,6 +12,8 @@ from flexarm_env import units
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import read_toml
 from flexarm_env.recordings.columns import UNITS, ColumnMap, Source, check_names
+from flexarm_env.recordings.corrections import SIGNAL_KEYS, TIME_KEYS, Corrections, read_corrections
+from flexarm_env.sensors import known_sensors
 
 _SETTINGS: dict[str, type] = {"delimiter": str, "header_prefix": str, "skip_rows": int, "decimal": str}
 _PLACES: dict[str, type] = {"column": str, "index": int, "variable": str}
@@ -21,7 +23,8 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
     """Load a column map from a TOML file with a `[columns]` table, or from such a table as a dict.
 
     Each FlexArm name holds `column` (header text), `index` (0-based) or `variable` (MATLAB), with `unit`,
-    and `sign` or `scale` if needed; beside them stand `delimiter`, `header_prefix`, `skip_rows`, `decimal`.
+    and `sign` or `scale` if needed; a signal also `ignore`, `range`, `repeats`, `wrap` and `shift`, time `shift`.
+    Beside them stand `delimiter`, `header_prefix`, `skip_rows`, `decimal`.
 
     Args:
         columns: the file, or the table.
@@ -38,7 +41,7 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
         ...     "arm_angle": {"column": "encoder", "unit": "deg", "sign": -1},
         ... }
         >>> load_columns(table).sources["arm_angle"]
-        Source(place='encoder', unit='deg', sign=-1, scale=1.0, key='column')
+        Source(place='encoder', unit='deg', sign=-1, scale=1.0, key='column', corrections=Corrections())
     """
     if isinstance(columns, ColumnMap):
         return columns
@@ -91,7 +94,8 @@ def _source(name: str, entry: Any) -> Source:
     where = f"[columns] {name}"
     if not isinstance(entry, Mapping):
         raise InputError(f"{where}: is {entry!r}; write {{column = 'header text', unit = '{UNITS[name]}'}}")
-    allowed = (*_PLACES, "unit", "sign", "scale")
+    corrections = SIGNAL_KEYS if name in known_sensors() else TIME_KEYS if name == "time" else ()
+    allowed = (*_PLACES, "unit", "sign", "scale", *corrections)
     for key in entry:
         if key not in allowed:
             raise InputError(f"{where}: unknown key {key!r}{did_you_mean(str(key), allowed)}")
@@ -110,7 +114,15 @@ def _source(name: str, entry: Any) -> Source:
     number, _ = units.split(scale) if isinstance(scale, str) else (_typed(f"{name}: scale", scale, float), "")
     if not math.isfinite(number) or number == 0:
         raise InputError(f"{where}: scale is {scale!r}; write a number that is not zero")
-    return Source(place, unit, int(sign), scale, kinds[0])
+    return Source(place, unit, int(sign), scale, kinds[0], _corrections(name, entry))
+
+
+def _corrections(name: str, entry: Mapping[str, Any]) -> Corrections:
+    """Read the corrections in the entry of one column."""
+    try:
+        return read_corrections(entry, UNITS[name])
+    except InputError as error:
+        raise InputError(f"[columns] {name}: {error}") from None
 
 
 def _typed(key: str, value: Any, kind: type) -> Any:

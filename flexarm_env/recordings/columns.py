@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from flexarm_env import units
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.parameters import INPUTS
+from flexarm_env.recordings.corrections import Corrections
 from flexarm_env.sensors import known_sensors
 
 UNITS = {"time": "s", **INPUTS, **{name: sensor.unit for name, sensor in known_sensors().items()}, "reference": "rad"}
@@ -28,6 +29,7 @@ class Source:
         sign: 1 or -1.
         scale: a plain factor, or a quantity such as "1 rad/m".
         key: of the entry that names the place: "column", "index" or "variable".
+        corrections: of a signal, in SI; of time the shift of all signals.
     """
 
     place: str | int
@@ -35,6 +37,7 @@ class Source:
     sign: int = 1
     scale: str | float = 1.0
     key: str = "index"
+    corrections: Corrections = field(default_factory=Corrections)
 
 
 @dataclass(frozen=True)

@@ -54,7 +54,13 @@ BAD = {
     "semicolons": (GOOD.replace(",", ";"), ["semicolons", "delimiter = ';'"]),
     "tabs": (GOOD.replace(",", "\t"), ["tabs", "delimiter"]),
     "empty cell": (GOOD.replace("2,0.6", ",0.6"), ["row 3", "'current'", "empty"]),
-    "nan": (GOOD.replace("0.6", "nan"), ["row 3", "'arm_angle'", "nan"]),
+    "nan command": (GOOD.replace("2,0.6", "nan,0.6"), ["row 3", "'current'", "nan", "only a signal may be absent"]),
+    "no command": (GOOD.replace("2,0.6", "NA,0.6"), ["row 3", "'current'", "'NA' is not a number"]),
+    "no reading at all": (f"{HEADER}\n0,1,\n1,1,nan\n", ["column 'arm_angle'", "no reading in any row"]),
+    "empty reference": (
+        GOOD.replace("[rad]\n", "[rad],reference [rad]\n").replace("0.6", "0.6,").replace("0.5", "0.5,1").replace("0.7", "0.7,1"),
+        ["row 3", "'reference'", "empty"],
+    ),
     "infinite": (GOOD.replace("0.6", "-inf"), ["row 3", "'arm_angle'", "inf"]),
     "too large": (GOOD.replace("0.6", "1e999"), ["row 3", "'arm_angle'", "inf"]),
     "too large once converted": (

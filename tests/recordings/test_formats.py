@@ -84,7 +84,8 @@ def test_its_faults_are_those_of_any_other(npz):
     assert "[columns] has 'column' for 'time'; use 'variable'" in refusal(file, columns=LOGGER)
     for bad, words in (
         (np.ones((60, 2)), "'arm_angle' is no vector"),
-        (np.full(60, np.nan), "sample 1, column 'arm_angle': is nan"),
+        (np.full(60, np.nan), "column 'arm_angle': has no reading in any row"),
+        (np.full(60, np.inf), "sample 1, column 'arm_angle': is inf"),
         (np.ones(59), "lengths differ"),
         (np.zeros(0), "without samples"),
         (np.full(60, "x"), "'arm_angle' is no vector"),

@@ -114,7 +114,7 @@ def test_a_row_of_tabs_is_empty_cells_where_tabs_part_them(tmp_path: Path) -> No
         (GOOD.replace("0.6", '"2,000"'), "may mark thousands or decimals; write 2000 or"),
         (GOOD.replace("0.6", '"-1,234,567"'), "write -1234567 or"),
         (GOOD.replace("0.6", '"0,600"'), "write 0.600"),
-        (GOOD.replace("2,0.6", ",0.6"), "row 3, column 'current': is empty; a number made up would spoil"),
+        (GOOD.replace("2,0.6", ",0.6"), "row 3, column 'current': is empty; a replay needs time, command and reference"),
     ],
 )
 def test_what_to_do_is_no_advice_that_spoils(tmp_path: Path, text: str, words: str) -> None:

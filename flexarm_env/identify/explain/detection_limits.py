@@ -124,8 +124,8 @@ class _Size:
     def change(self) -> tuple[float, float]:
         """Compute the variance by which the effect changes the innovations, and that which constants cannot take over."""
         change = self.base.change(self.name, self.values)
-        left = self.base.unexplained(change)
-        return float(np.mean(change**2)), float(np.mean(left**2))
+        left, count = self.base.unexplained(change), self.base.objective.dataset.readings(held_out=False)
+        return float(np.sum(change**2) / count), float(np.sum(left**2) / count)
 
     def stepped(self, wanted: float, rise: float) -> _Size:
         """Scale the size to where a variance that grows with its square is as wanted."""

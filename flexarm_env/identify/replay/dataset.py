@@ -13,6 +13,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 from flexarm_env.experiments.payload import check_payload, plants_by_payload, stated_payload
 from flexarm_env.identify.replay.initial_state import Stretch, find_start
+from flexarm_env.identify.replay.readings import extent, measured_time, share_of
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.replay.scales import scales_of
 from flexarm_env.identify.settings import SETTINGS, Settings
@@ -52,6 +53,10 @@ class Dataset:
         """Choose the runs to replay: whole ones for the held-out part, which comes last; else the fitted part alone."""
         return self.runs if held_out else self.fitted
 
+    def readings(self, held_out: bool) -> int:
+        """Count the readings of the held-out or the fitted part."""
+        return sum(run.readings(~run.train if held_out else run.train) for run in self.runs)
+
     def plants(self, arm: Arm) -> dict[float, Plant]:
         """Build an arm's plants by the payload [kg] of the runs, which carry it."""
         return plants_by_payload(arm, (run.payload for run in self.runs), self.interval)
@@ -83,30 +88,32 @@ def prepare(arm: Arm, recordings: Sequence[Recording], settings: Settings = SETT
     signals = [s for s in arm.signals if all(s in r.signals for r in recordings)]
     if not signals:
         raise InputError(f"no signal is in all recordings and in arm '{arm.name}', which has {', '.join(arm.signals)}")
-    for recording in recordings:
-        _check(arm, recording, settings.preparation.fewest_samples)
+    measured = [np.stack([r.signals[s] for s in signals], axis=1) for r in recordings]
+    for recording, readings in zip(recordings, measured, strict=True):
+        _check(arm, recording, readings, settings.preparation.fewest_samples)
     interval = float(np.median([r.sample_time for r in recordings]))
     arm = replace(arm, sensors={s: arm.sensors[s] for s in signals})
-    measured = [np.stack([r.signals[s] for s in signals], axis=1) for r in recordings]
     noise = _noise(arm, signals, measured, settings)
     runs = tuple(_run(r, m, signals, noise, interval, settings) for r, m in zip(recordings, measured, strict=True))
     scales = scales_of(arm, runs, signals, settings.reference)
     return arm, Dataset(runs, tuple(signals), interval, noise, scales, settings)
 
 
-def _check(arm: Arm, recording: Recording, fewest: int) -> None:
+def _check(arm: Arm, recording: Recording, measured: Floats, fewest: int) -> None:
     if recording.input_kind != arm.input:
         other = next(kind for kind in INPUTS if kind != arm.input)
         raise InputError(f"{recording.name} holds {other}, but arm '{arm.name}' is driven by {arm.input}")
     check_payload(arm, recording)
-    if len(recording) < fewest:
-        raise InputError(f"{recording.name} has {len(recording)} samples; at least {fewest} are needed")
+    count = int(np.count_nonzero(share_of(measured)))
+    if count < fewest:
+        with_readings = f" with a reading of {' or '.join(arm.signals)}" if count < len(recording) else ""
+        raise InputError(f"{recording.name} has {count} samples{with_readings}; at least {fewest} are needed")
 
 
 def _noise(arm: Arm, signals: list[str], measured: list[Floats], settings: Settings) -> Floats:
     numbers = settings.preparation
     stated = [reading_noise(arm.sensors[s]) for s in signals]
-    spread = np.ptp(np.concatenate(measured), axis=0)
+    spread = extent(np.concatenate(measured))
     pairs = zip(stated, spread, strict=True)
     return np.array([n if n > 0.0 else max(numbers.default_noise * w, numbers.least_noise) for n, w in pairs])
 
@@ -114,7 +121,7 @@ def _noise(arm: Arm, signals: list[str], measured: list[Floats], settings: Setti
 def _run(recording: Recording, measured: Floats, signals: list[str], noise: Floats, interval: float, settings: Settings) -> Run:
     numbers = settings.preparation
     time = recording.time - recording.time[0]
-    steps = np.diff(time)
+    steps, shown = np.diff(time), measured_time(time, measured)
     # Wider than in a simulation, where only rounding counts as even: tables for one interval make replays fast.
     uneven = np.abs(steps - interval).max() > numbers.uneven * interval
     return Run(
@@ -123,7 +130,7 @@ def _run(recording: Recording, measured: Floats, signals: list[str], noise: Floa
         command=np.ascontiguousarray(recording.command),
         measured=np.ascontiguousarray(measured),
         intervals=np.append(steps, interval) if uneven else NO_INTERVALS,
-        train=time < (1.0 - numbers.held_out_share) * time[-1],
+        train=shown < (1.0 - numbers.held_out_share) * shown[-1],
         start=find_start(time, measured, signals, noise, settings.initial_states),
         payload=stated_payload(recording),
     )

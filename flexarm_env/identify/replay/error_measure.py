@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from flexarm_env.arm import Arm
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.observer import innovation_sigma, observer_gains
+from flexarm_env.identify.replay.readings import bounded
 from flexarm_env.identify.replay.replay import replay, window_observers, window_replay
-from flexarm_env.identify.replay.run import Run
-from flexarm_env.identify.settings import FAILED_ERROR, LEAST_EXCESS
+from flexarm_env.identify.settings import LEAST_EXCESS
 from flexarm_env.plant.plant import Plant
 
 Floats = NDArray[np.float64]
@@ -84,14 +84,12 @@ class WindowErrors:
         plants = dataset.plants(arm)
         observers = {payload: window_observers(arm, plant, dataset) for payload, plant in plants.items()}
         totals = np.zeros(2)
-        count = 0
         for run in dataset.runs_to_replay(held_out):
             rows = ~run.train if held_out else run.train
             plant, first = plants[run.payload], int(np.argmax(rows))
             windows = window_replay(plant, run, dataset, observers[run.payload], first)
-            totals += [_squares(run, replayed, rows, dataset) for replayed in (windows, replay(plant, run, dataset))]
-            count += int(rows.sum()) * len(dataset.signals)
-        windows, free = np.sqrt(totals / count)
+            totals += [_squares(run.errors(y, dataset.noise)[rows]) for y in (windows, replay(plant, run, dataset))]
+        windows, free = np.sqrt(totals / dataset.readings(held_out))
         return Score(float(windows), float(free))
 
     def brief(self, arm: Arm, dataset: Dataset) -> float:
@@ -99,13 +97,12 @@ class WindowErrors:
         plants = dataset.plants(arm)
         levels = dataset.settings.process_noise.windows_brief
         observers = {payload: window_observers(arm, plant, dataset, levels)[1:] for payload, plant in plants.items()}
-        total, count = 0.0, 0
+        total = 0.0
         for run in dataset.runs:
             rows = ~run.train
             windows = window_replay(plants[run.payload], run, dataset, observers[run.payload], int(np.argmax(rows)))
-            total += _squares(run, windows, rows, dataset)
-            count += int(rows.sum()) * len(dataset.signals)
-        return float(np.sqrt(total / count))
+            total += _squares(run.errors(windows, dataset.noise)[rows])
+        return float(np.sqrt(total / dataset.readings(held_out=True)))
 
 
 @dataclass(frozen=True)
@@ -121,15 +118,13 @@ class InnovationErrors:
         gains = {payload: observer_gains(arm, plant, dataset, own) for payload, plant in plants.items()}
         sigmas = {payload: innovation_sigma(plant, dataset, own) for payload, plant in plants.items()}
         totals = np.zeros(2)
-        count = 0
         for run in dataset.runs:
             rows = ~run.train if held_out else run.train
             plant = plants[run.payload]
-            corrected = (run.measured - replay(plant, run, dataset, gains[run.payload])) / sigmas[run.payload]
-            free = (run.measured - replay(plant, run, dataset)) / dataset.noise
-            totals += [np.sum(np.nan_to_num(part[rows], nan=FAILED_ERROR) ** 2) for part in (corrected, free)]
-            count += int(rows.sum()) * len(dataset.signals)
-        innovations, free_run = np.sqrt(totals / count)
+            corrected = run.errors(replay(plant, run, dataset, gains[run.payload]), sigmas[run.payload])
+            free = run.errors(replay(plant, run, dataset), dataset.noise)
+            totals += [_squares(errors[rows]) for errors in (corrected, free)]
+        innovations, free_run = np.sqrt(totals / dataset.readings(held_out))
         return Score(float(innovations), float(free_run))
 
     def brief(self, arm: Arm, dataset: Dataset) -> float:
@@ -148,16 +143,14 @@ def score(arm: Arm, dataset: Dataset, held_out: bool = True) -> Score:
 
 
 def window_errors(arm: Arm, plants: Mapping[float, Plant], dataset: Dataset) -> list[Floats]:
-    """Compute the errors over noise (samples, signals) of each whole run in windows."""
+    """Compute the errors over noise (samples, signals) of each whole run in windows; 0 where nothing was measured."""
     observers = {payload: window_observers(arm, plant, dataset) for payload, plant in plants.items()}
     errors = []
     for run in dataset.runs:
         replayed = window_replay(plants[run.payload], run, dataset, observers[run.payload])
-        scaled = (run.measured - replayed) / dataset.noise
-        errors.append(np.nan_to_num(scaled, nan=FAILED_ERROR))
+        errors.append(bounded(run.errors(replayed, dataset.noise)))
     return errors
 
 
-def _squares(run: Run, replayed: Floats, rows: NDArray[np.bool_], dataset: Dataset) -> float:
-    scaled = (run.measured[rows] - replayed[rows]) / dataset.noise
-    return float(np.sum(np.nan_to_num(scaled, nan=FAILED_ERROR) ** 2))
+def _squares(errors: Floats) -> float:
+    return float(np.sum(bounded(errors) ** 2))

@@ -27,7 +27,7 @@ def preflight(dataset: Dataset) -> tuple[list[str], bool]:
     length = sum(run.time[-1] for run in dataset.runs)
     turns = np.array([signal == "motor_speed" for signal in dataset.signals])  # steadily, too
     motion = max(
-        float((np.where(turns, np.abs(run.measured).max(axis=0), np.ptp(run.measured, axis=0)) / dataset.noise).max())
+        float((np.where(turns, np.fmax.reduce(np.abs(run.measured), axis=0), run.extent) / dataset.noise).max())
         for run in dataset.runs
     )
     if length < numbers.shortest:

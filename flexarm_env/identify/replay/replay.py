@@ -66,7 +66,7 @@ def window_replay(plant: Plant, run: Run, dataset: Dataset, observers: Sequence[
             if start + length > first or not len(gains):
                 free = plant.play(command[part], intervals, NO_GAINS, NOT_MEASURED)[:length]
                 inside = slice(start, start + len(free))
-                error = float(np.sum(((run.measured[inside] - free) / dataset.noise) ** 2))
+                error = float(np.sum(run.errors(free, dataset.noise, inside) ** 2))
                 if error < best[w] or not np.isfinite(best[w]):
                     out[inside], best[w] = free, error if np.isfinite(error) else np.inf
             if len(gains):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.recordings.cells import count_cells, cut, is_blank, is_number, read_numbers, usual_width
@@ -124,7 +125,7 @@ def _places(header: Sequence[str], layout: ColumnMap) -> dict[str, Source]:
         twin = next((other for other in sources if sources[other].place == place), None)
         if twin:
             raise InputError(f"columns '{twin}' and '{name}': both map to column {place}; correct one of them")
-        sources[name] = Source(place, source.unit, source.sign, source.scale)
+        sources[name] = replace(source, place=place, key="index")
     return sources
 
 
