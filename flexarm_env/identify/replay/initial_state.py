@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
+from flexarm_env.identify.replay.closed_loop import play_loop
+from flexarm_env.identify.replay.loop import Loop
 from flexarm_env.identify.settings import FAILED_ERROR, InitialStates
 from flexarm_env.plant.plant import NO_GAINS, NOT_MEASURED, Plant
 from flexarm_env.sensors import known_sensors
@@ -104,6 +106,7 @@ class Stretch:
         measured: (samples, signals), SI units.
         noise: (signals,) standard deviations.
         settings: thresholds.
+        loop: in which the stretch is replayed; under the commands without.
     """
 
     start: Start
@@ -112,6 +115,7 @@ class Stretch:
     measured: Floats
     noise: Floats
     settings: InitialStates
+    loop: Loop | None = None
 
     @property
     def command_before(self) -> float:
@@ -138,7 +142,10 @@ class Stretch:
     def _residual(self, plant: Plant, state: Floats) -> Floats:
         """Compute the error of every reading over its standard deviation (rows,)."""
         plant.place(state, self.command_before)
-        readings = plant.replay(self.command, self.intervals, NO_GAINS, NOT_MEASURED)
+        if self.loop is None:
+            readings = plant.replay(self.command, self.intervals, NO_GAINS, NOT_MEASURED)
+        else:
+            readings = play_loop(plant, self.loop, self.intervals).readings
         errors = (readings - self.measured) / self.noise
         return np.nan_to_num(errors, nan=FAILED_ERROR, posinf=FAILED_ERROR, neginf=-FAILED_ERROR).ravel()
 
