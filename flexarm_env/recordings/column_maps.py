@@ -5,12 +5,17 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from flexarm_env import units
+from flexarm_env.control.law import ControlLaw
+from flexarm_env.control.table import law_from_table
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import read_toml
+from flexarm_env.parameters import INPUTS
+from flexarm_env.recordings.checks import check_conditions
 from flexarm_env.recordings.columns import UNITS, ColumnMap, Source, check_names
 from flexarm_env.recordings.corrections import SIGNAL_KEYS, TIME_KEYS, Corrections, read_corrections
 from flexarm_env.sensors import known_sensors
@@ -24,7 +29,8 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
 
     Each FlexArm name holds `column` (header text), `index` (0-based) or `variable` (MATLAB), with `unit`,
     and `sign` or `scale` if needed; a signal also `ignore`, `range`, `repeats`, `wrap` and `shift`, time `shift`.
-    Beside them stand `delimiter`, `header_prefix`, `skip_rows`, `decimal`.
+    Beside them stand `delimiter`, `header_prefix`, `skip_rows`, `decimal`, and a table `conditions` of columns that hold one
+    number each, such as a gain. A file may have a `[controller]` table, too.
 
     Args:
         columns: the file, or the table.
@@ -48,11 +54,13 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
     if isinstance(columns, Mapping):
         return _column_map(columns)
     path = Path(columns)
-    table = read_toml(path).get("columns")
+    tables = read_toml(path)
+    table = tables.get("columns")
     if not isinstance(table, dict):
         raise InputError(f"{path}: has no [columns] table; put the map under a line [columns]")
     try:
-        return _column_map(table)
+        layout = _column_map(table)
+        return replace(layout, controller=_law(tables["controller"], layout)) if "controller" in tables else layout
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
 
@@ -62,10 +70,11 @@ def _column_map(table: Mapping[str, Any]) -> ColumnMap:
     sources: dict[str, Source] = {}
     for key, value in table.items():
         if key in UNITS:
-            sources[key] = _source(key, value)
-        elif key not in _SETTINGS:
-            raise InputError(f"[columns]: unknown key {key!r}{did_you_mean(str(key), (*UNITS, *_SETTINGS))}")
-    if len({source.key == "variable" for source in sources.values()}) > 1:
+            sources[key] = _source(key, value, UNITS[key])
+        elif key not in (*_SETTINGS, "conditions"):
+            raise InputError(f"[columns]: unknown key {key!r}{did_you_mean(str(key), (*UNITS, *_SETTINGS, 'conditions'))}")
+    conditions = _conditions(table.get("conditions", {}))
+    if len({source.key == "variable" for source in (*sources.values(), *conditions.values())}) > 1:
         raise InputError("[columns]: some entries have 'variable' and some 'column' or 'index'; keep to one kind")
     settings = {key: _typed(key, table[key], _SETTINGS[key]) for key in _SETTINGS if key in table}
     _check_settings(settings)
@@ -73,7 +82,27 @@ def _column_map(table: Mapping[str, Any]) -> ColumnMap:
         check_names(tuple(sources))
     except InputError as error:
         raise InputError(f"[columns] {error}") from None
-    return ColumnMap(sources, **settings)
+    return ColumnMap(sources, **settings, conditions=conditions)
+
+
+def _conditions(table: Any) -> dict[str, Source]:
+    """Check the sources of conditions."""
+    if not isinstance(table, Mapping):
+        raise InputError("[columns] conditions: is not a table; write it under a line [columns.conditions]")
+    for name in table:
+        if name in UNITS:
+            raise InputError(f"[columns.conditions]: {name!r} is a column; give the condition another name")
+        check_conditions({str(name): 0.0})
+    return {str(name): _source(f"conditions.{name}", entry, "1") for name, entry in table.items()}
+
+
+def _law(table: Any, layout: ColumnMap) -> ControlLaw:
+    """Read the `[controller]` table beside a column map."""
+    law = law_from_table(table, next(kind for kind in INPUTS if kind in layout.sources))
+    for signal in law.signals:
+        if signal not in layout.sources:
+            raise InputError(f"controller.{signal} feeds back a signal that [columns] does not name; add it there")
+    return law
 
 
 def _check_settings(settings: Mapping[str, Any]) -> None:
@@ -89,11 +118,11 @@ def _check_settings(settings: Mapping[str, Any]) -> None:
         raise InputError("[columns]: skip_rows is negative; write the number of lines to drop")
 
 
-def _source(name: str, entry: Any) -> Source:
-    """Check one entry of a `[columns]` table."""
+def _source(name: str, entry: Any, usual: str) -> Source:
+    """Check one entry of a `[columns]` table, of a quantity in a usual unit."""
     where = f"[columns] {name}"
     if not isinstance(entry, Mapping):
-        raise InputError(f"{where}: is {entry!r}; write {{column = 'header text', unit = '{UNITS[name]}'}}")
+        raise InputError(f"{where}: is {entry!r}; write {{column = 'header text', unit = '{usual}'}}")
     corrections = SIGNAL_KEYS if name in known_sensors() else TIME_KEYS if name == "time" else ()
     allowed = (*_PLACES, "unit", "sign", "scale", *corrections)
     for key in entry:
@@ -106,7 +135,7 @@ def _source(name: str, entry: Any) -> Source:
     if place == "" or (isinstance(place, int) and place < 0):
         raise InputError(f"{where}: {kinds[0]} is {place!r}; columns count from 0")
     if "unit" not in entry:
-        raise InputError(f"{where}: has no unit; add unit = '{UNITS[name]}' or what the file has")
+        raise InputError(f"{where}: has no unit; add unit = '{usual}' or what the file has")
     unit = _typed(f"{name}: unit", entry["unit"], str)
     sign, scale = entry.get("sign", 1), entry.get("scale", 1.0)
     if isinstance(sign, bool) or sign not in (1, -1):

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 from flexarm_env.errors import InputError
 from flexarm_env.recordings.checks import as_vector
-from flexarm_env.recordings.columns import ColumnMap
+from flexarm_env.recordings.columns import ColumnMap, base_value
+from flexarm_env.recordings.messages import quoted
 from flexarm_env.recordings.table import Table
 
 
@@ -45,11 +46,28 @@ class Format:
         use = " or ".join(f"'{key}'" for key in self.keys)
         if columns is None and self.needs_map:
             raise InputError(f"a {self.name} needs a [columns] table that names its columns by {use}")
-        for name, source in columns.sources.items() if columns else ():
+        for name, source in (columns.sources | columns.conditions).items() if columns else ():
             if source.key not in self.keys:
                 raise InputError(f"is a {self.name}, but [columns] has '{source.key}' for '{name}'; use {use}")
-        table = self.read(content, columns)
+        table = self.read(content, columns) if columns is None else self._with_conditions(content, columns)
         values = {name: as_vector(name, numbers) for name, numbers in table.values.items()}
         if not all(map(len, values.values())):
             raise InputError("has a column without samples; it needs at least two in each")
         return replace(table, values=values)
+
+    def _with_conditions(self, content: bytes, columns: ColumnMap) -> Table:
+        """Read the columns of conditions beside the others; each must hold one number throughout."""
+        table = self.read(content, replace(columns, sources=columns.sources | columns.conditions))
+        conditions = dict(table.conditions)
+        for name, source in columns.conditions.items():
+            numbers = as_vector(name, table.values[name])
+            if not len(numbers) or (numbers != numbers[0]).any():
+                place = quoted(str(source.place))
+                raise InputError(
+                    f"condition '{name}': {place} is not one number throughout; cut the file in two where it changes"
+                )
+            if name in conditions:
+                raise InputError(f"condition '{name}' comes twice, in [columns] and in the file's remarks; keep one of the two")
+            conditions[name] = base_value(float(numbers[0]), source)
+        values = {name: numbers for name, numbers in table.values.items() if name not in columns.conditions}
+        return replace(table, values=values, conditions=conditions)

@@ -54,7 +54,7 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
         if variable not in classes:
             raise InputError(f"column '{name}': no variable {variable!r}{did_you_mean(variable, classes)}")
         values[name] = _vector(name, variable, variables.get(variable))
-    lengths = {name: len(value) for name, value in values.items()}
+    lengths = {name: len(value) for name, value in values.items() if columns is None or name not in columns.conditions}
     if len(set(lengths.values())) > 1:
         raise InputError(f"its variables differ in length ({lengths}); give vectors of one length")
     return Table(values, dict(sources))
