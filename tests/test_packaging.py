@@ -25,7 +25,7 @@ HEAVY = {"torch", "stable_baselines3", "sb3_contrib", "plotly", "matplotlib", "p
 LAYERS = (
     {"errors"},
     {"units", "parameters", "files", "generated", "display"},
-    {"arm", "arm_file", "plant", "effects", "sensors", "linear", "recordings", "thesis_drive"},
+    {"arm", "arm_file", "plant", "effects", "sensors", "control", "linear", "recordings", "thesis_drive"},
     {"experiments"},
     {"identify", "controllers", "tasks", "render", "env"},
     {"vector_env", "sb3", "pictures", "registration"},

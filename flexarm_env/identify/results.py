@@ -27,6 +27,7 @@ class Fit:
         estimates: every fitted value.
         error: "nominal", "refitted": rms over noise on the held-out part, in windows of 1 s.
         free_run: the same, replayed once from the start.
+        closed_loop: the same in closed loop, where the recordings were made in a known one; else empty.
         seconds: time taken.
         settings: numbers of the method.
     """
@@ -37,6 +38,7 @@ class Fit:
     free_run: dict[str, float]
     seconds: float
     settings: Settings = SETTINGS
+    closed_loop: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,7 @@ class Addition:
         estimates: the effect's parameters, then the constants.
         error: "nominal", "refitted" (constants only), "final" (with the effect): rms over noise, held out, windows of 1 s.
         free_run: the same, replayed once from the start.
+        closed_loop: the same in closed loop, where the recordings were made in a known one; else empty.
         seconds: time taken.
         settings: numbers of the method.
     """
@@ -60,6 +63,7 @@ class Addition:
     free_run: dict[str, float]
     seconds: float
     settings: Settings = SETTINGS
+    closed_loop: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -91,6 +95,7 @@ class Diagnosis(Shown):
         error: "nominal", "refitted", "final", and one entry after each accepted effect under its name; rms over noise, held
             out, windows of 1 s.
         free_run: the same, replayed once from the start.
+        closed_loop: the same in closed loop, where the recordings were made in a known one; else empty.
         constants: all fitted values of the final arm by short name.
         arm: the corrected arm.
         nominal: the arm that came in.
@@ -121,6 +126,7 @@ class Diagnosis(Shown):
     next_run: NextRun | None = None
     trace: list[dict[str, Any]] = field(default_factory=list)
     settings: Settings = SETTINGS
+    closed_loop: dict[str, float] = field(default_factory=dict)
 
     def as_json(self) -> dict[str, Any]:
         """Convert to plain data for `--json`."""
@@ -139,6 +145,7 @@ class Diagnosis(Shown):
             ],
             "error": self.error,
             "free_run": self.free_run,
+            "closed_loop": self.closed_loop,
             "constants": {name: e.as_json() for name, e in self.constants.items()},
             "notes": self.notes,
             "smallest": {name: hidden.as_json() for name, hidden in self.smallest.items()},

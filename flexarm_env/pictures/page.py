@@ -50,7 +50,13 @@ def page(found: Findings) -> str:
     if diagnosis is not None:
         parts += [_curves(found), _ranking(diagnosis), _falling(diagnosis), _constants(diagnosis)]
         parts += [_smallest(diagnosis), _next_run(diagnosis)]
-    parts += [section("Where it fails", _errors(before, found.after)), _residuals(found), _recordings(found), _redo(found)]
+    parts += [
+        section("Where it fails", _errors(before, found.after)),
+        _loop(before, found.after),
+        _residuals(found),
+        _recordings(found),
+        _redo(found),
+    ]
     title = f"Arm {before.arm.name} against {words.counted(len(before.replays), 'recording')}"
     return document(title, parts)
 
@@ -107,7 +113,9 @@ def _ranking(diagnosis: Diagnosis) -> str:
 
 def _falling(diagnosis: Diagnosis) -> str:
     shown = []
-    for name, error in (("windows of 1 s from estimated states", diagnosis.error), ("one free run", diagnosis.free_run)):
+    errors = {"windows of 1 s from estimated states": diagnosis.error, "one free run": diagnosis.free_run}
+    errors |= {"closed loop": diagnosis.closed_loop} if diagnosis.closed_loop else {}
+    for name, error in errors.items():
         drawn = bars.waterfall(words.steps_of(error, diagnosis.effects))
         shown.append(figure(drawn, f"fall-{name}", name[0].upper() + name[1:]))
     return section("How the held-out error fell", paragraph(OVER_NOISE), panels(shown, wide=True))
@@ -173,6 +181,16 @@ def _errors(before: Comparison, after: Comparison | None) -> str:
     if after is not None:
         columns = ["signal", "part", "as given, windows", "free run", "corrected, windows", "free run"]
     return folded("Errors over the noise by signal, regime and frequency", table(columns, cells, words=2))
+
+
+def _loop(before: Comparison, after: Comparison | None) -> str:
+    """Format the errors in closed loop, of the arm as given and of the corrected one."""
+    if not before.loop_rows:
+        return ""
+    shown = [("As given", before)] + ([] if after is None else [("Corrected", after)])
+    parts = [f"<h3>{name}</h3>{table(words.LOOP_HEADS, words.loop_rows(one), words=2)}" for name, one in shown]
+    text = "The stated control law computes the command from the model's own readings and the recorded reference."
+    return section("In closed loop", paragraph(text), *parts)
 
 
 def _residuals(found: Findings) -> str:

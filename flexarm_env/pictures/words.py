@@ -176,7 +176,26 @@ def addition(result: Addition) -> str:
 
 def comparison(result: Comparison) -> str:
     """Write an arm's error on recordings in one sentence."""
+    closed = "" if result.closed_loop is None else f", by {number(result.closed_loop)} × in closed loop"
     return (
         f"Arm '{result.arm.name}' misses by {number(result.error)} × the noise in windows of 1 s, "
-        f"by {number(result.free_run)} × in one free run; 1 is perfect."
+        f"by {number(result.free_run)} × in one free run{closed}; 1 is perfect."
     )
+
+
+#: Heads of the table of errors in closed loop.
+LOOP_HEADS = ("recording", "quantity", "error over noise", "fit", "100 ‖e‖/‖y‖")
+
+
+def loop_rows(result: Comparison) -> list[list[str]]:
+    """Format the errors in closed loop by recording and quantity."""
+    return [
+        [
+            row.recording,
+            label_of(row.quantity) if row.quantity in known_sensors() else row.quantity,
+            number(row.error),
+            f"{row.fit:.1f} %" if math.isfinite(row.fit) else NOTHING,
+            f"{number(row.relative)} %" if math.isfinite(row.relative) else NOTHING,
+        ]
+        for row in result.loop_rows
+    ]

@@ -40,7 +40,7 @@ def read_sources(name: str, entry: Any) -> list[Source]:
     """Read one entry of a `[columns]` table: one source, or several whose columns are added.
 
     Args:
-        name: of the quantity.
+        name: of the quantity, or "conditions." and that of a condition.
         entry: the value beside it.
 
     Raises:
@@ -48,7 +48,7 @@ def read_sources(name: str, entry: Any) -> list[Source]:
     """
     where = f"[columns] {name}"
     if not isinstance(entry, Mapping):
-        raise InputError(f"{where}: is {entry!r}; write {{column = 'header text', unit = '{UNITS[name]}'}}")
+        raise InputError(f"{where}: is {entry!r}; write {{column = 'header text', unit = '{_usual(name)}'}}")
     allowed = _allowed_keys(name)
     for key in entry:
         if key not in allowed:
@@ -74,7 +74,14 @@ def read_sources(name: str, entry: Any) -> list[Source]:
 def _allowed_keys(name: str) -> tuple[str, ...]:
     if name == "time":
         return (*PLACES, *_CONVERSION, *TIME_KEYS, "row", "rate")
+    if name not in UNITS:
+        return (*PLACES, *_CONVERSION, "row")
     return (*PLACES, *_CONVERSION, *(SIGNAL_KEYS if name in known_sensors() else ()), "row", "file", "time")
+
+
+def _usual(name: str) -> str:
+    """Find the unit in SI of a quantity, that of a number for a condition."""
+    return UNITS.get(name, "1")
 
 
 def _key_of(name: str, entry: Mapping[str, Any]) -> str:
@@ -99,7 +106,7 @@ def _part(name: str, key: str, place: Any, unit: Any, entry: Mapping[str, Any]) 
     if place == "" or (isinstance(place, int) and place < 0):
         raise InputError(f"{where}: {key} is {place!r}; columns count from 0")
     if unit is None:
-        raise InputError(f"{where}: has no unit; add unit = '{UNITS[name]}' or what the file has")
+        raise InputError(f"{where}: has no unit; add unit = '{_usual(name)}' or what the file has")
     unit = typed(f"{name}: unit", unit, str)
     sign, scale = entry.get("sign", 1), entry.get("scale", 1.0)
     if isinstance(sign, bool) or sign not in (1, -1):
@@ -115,7 +122,7 @@ def _part(name: str, key: str, place: Any, unit: Any, entry: Mapping[str, Any]) 
 def _corrections(name: str, entry: Mapping[str, Any]) -> Corrections:
     """Read the corrections in the entry of one column."""
     try:
-        return read_corrections(entry, UNITS[name])
+        return read_corrections(entry, _usual(name))
     except InputError as error:
         raise InputError(f"[columns] {name}: {error}") from None
 

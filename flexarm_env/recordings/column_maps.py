@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from flexarm_env.control.law import ControlLaw
+from flexarm_env.control.table import law_from_table
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import read_toml
+from flexarm_env.parameters import INPUTS
+from flexarm_env.recordings.checks import check_conditions
 from flexarm_env.recordings.column_entries import PLACES, listed, read_sources, typed
 from flexarm_env.recordings.columns import UNITS, ColumnMap, Source, check_names, part_names
 from flexarm_env.recordings.messages import file_error
@@ -22,7 +27,8 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
     Each FlexArm name holds `column` (header text), `index` (0-based) or `variable` (a path such as "data.signals(2).values",
     with `row` or `index` of a matrix), with `unit`, and `sign` or `scale` if needed; `file` names another file that has it.
     Entries that all lack a place refine FlexArm's own header. A signal also has `ignore`, `range`, `repeats`, `wrap` and
-    `shift`, time `shift`. Beside them stand `delimiter`, `header_prefix`, `skip_rows`, `decimal`.
+    `shift`, time `shift`. Beside them stand `delimiter`, `header_prefix`, `skip_rows`, `decimal`, and a table `conditions` of
+    columns that hold one number each, such as a gain. A file may have a `[controller]` table, too.
 
     Args:
         columns: the file, or the table.
@@ -47,11 +53,13 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
     if isinstance(columns, Mapping):
         return _column_map(columns)
     path = Path(columns)
-    table = read_toml(path).get("columns")
+    tables = read_toml(path)
+    table = tables.get("columns")
     if not isinstance(table, dict):
         raise InputError(f"{path}: has no [columns] table; put the map under a line [columns]")
     try:
-        return _column_map(table)
+        layout = _column_map(table)
+        return replace(layout, controller=_law(tables["controller"], layout)) if "controller" in tables else layout
     except InputError as error:
         raise file_error(path, error) from None
 
@@ -63,11 +71,11 @@ def _column_map(table: Mapping[str, Any]) -> ColumnMap:
         if key in UNITS:
             parts = read_sources(key, value)
             sources |= dict(zip(part_names(key, len(parts)), parts, strict=True))
-        elif key not in _SETTINGS:
-            raise InputError(f"[columns]: unknown key {key!r}{did_you_mean(str(key), (*UNITS, *_SETTINGS))}")
+        elif key not in (*_SETTINGS, "conditions"):
+            raise InputError(f"[columns]: unknown key {key!r}{did_you_mean(str(key), (*UNITS, *_SETTINGS, 'conditions'))}")
     settings = {key: typed(key, table[key], _SETTINGS[key]) for key in _SETTINGS if key in table}
     _check_settings(settings)
-    columns = ColumnMap(sources, **settings)
+    columns = ColumnMap(sources, **settings, conditions=_conditions(table.get("conditions", {})))
     _check_kinds(columns)
     if not (table and columns.refines):
         try:
@@ -79,14 +87,39 @@ def _column_map(table: Mapping[str, Any]) -> ColumnMap:
 
 def _check_kinds(columns: ColumnMap) -> None:
     """Refuse entries that cannot be of one file."""
+    if columns.refines and columns.conditions:
+        raise InputError("[columns]: has conditions in columns, so name the places of the others, too")
     by_file: dict[str, set[str]] = {}
-    for name, source in columns.sources.items():
+    for name, source in (columns.sources | columns.conditions).items():
         if source.key == "header" and not columns.refines:
             raise InputError(f"[columns] {name}: give exactly one of {listed(PLACES)}, as the other entries do")
         if source.key != "rate" and not (name.startswith("time") and columns.joins):
             by_file.setdefault(source.file, set()).add("variable" if source.key == "variable" else "column")
-    if any(len(kinds) > 1 for kinds in by_file.values()):
+    if not columns.joins and any(len(kinds) > 1 for kinds in by_file.values()):
         raise InputError("[columns]: some entries have 'variable' and some 'column' or 'index'; keep to one kind")
+
+
+def _conditions(table: Any) -> dict[str, Source]:
+    """Check the sources of conditions."""
+    if not isinstance(table, Mapping):
+        raise InputError("[columns] conditions: is not a table; write it under a line [columns.conditions]")
+    for name in table:
+        if name in UNITS:
+            raise InputError(f"[columns.conditions]: {name!r} is a column; give the condition another name")
+        check_conditions({str(name): 0.0})
+    return {str(name): read_sources(f"conditions.{name}", entry)[0] for name, entry in table.items()}
+
+
+def _law(table: Any, layout: ColumnMap) -> ControlLaw:
+    """Read the `[controller]` table beside a column map."""
+    kind = next((kind for kind in INPUTS if kind in layout.sources), None)
+    if kind is None:
+        raise InputError("[controller] has a command that [columns] does not name; add current = {} or voltage = {} there")
+    law = law_from_table(table, kind)
+    for signal in law.signals:
+        if signal not in layout.sources:
+            raise InputError(f"controller.{signal} feeds back a signal that [columns] does not name; add it there")
+    return law
 
 
 def _check_settings(settings: Mapping[str, Any]) -> None:

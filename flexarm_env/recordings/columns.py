@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from flexarm_env import units
+from flexarm_env.control.law import ControlLaw
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.parameters import INPUTS
 from flexarm_env.recordings.corrections import Corrections
@@ -59,6 +60,8 @@ class ColumnMap:
         header_prefix: the header is the last of the leading lines that start with it; "" if it has no mark.
         skip_rows: lines to drop at the top.
         decimal: "." or ",".
+        conditions: the place of each condition that the file states as a column or variable of equal numbers.
+        controller: the law under which the recordings were made, if it stands beside the map.
     """
 
     sources: dict[str, Source] = field(default_factory=dict)
@@ -66,6 +69,8 @@ class ColumnMap:
     header_prefix: str = ""
     skip_rows: int = 0
     decimal: str = "."
+    conditions: dict[str, Source] = field(default_factory=dict)
+    controller: ControlLaw | None = None
 
     @property
     def refines(self) -> bool:
@@ -161,6 +166,13 @@ def si_factor(name: str, source: Source, calibration: Mapping[str, float]) -> fl
         return source.sign * units.factor(source.unit, unit, source.scale)
     except InputError as error:
         raise InputError(f"column '{name}': {error}") from None
+
+
+def base_value(number: float, source: Source) -> float:
+    """Convert a number of the file to SI base units."""
+    scale, scale_unit = (float(source.scale), "") if isinstance(source.scale, int | float) else units.split(source.scale)
+    factor = source.sign * scale * (units.base_value(f"1 {scale_unit}") if scale_unit else 1.0)
+    return number * factor * (units.base_value(f"1 {source.unit}") if source.unit not in ("", "1") else 1.0)
 
 
 def _in_volts(source: Source) -> bool:

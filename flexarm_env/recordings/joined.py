@@ -125,7 +125,8 @@ def read_joined(path: Path, columns: ColumnMap, gains: Mapping[str, float]) -> t
         file = path if pattern in ("", main) else path.with_name(pattern.replace("*", name))
         try:
             content = read_bytes(file)
-            table = format_of(file).table(content, replace(columns, sources=sources))
+            beside = columns.conditions if pattern in ("", main) else {}
+            table = format_of(file).table(content, replace(columns, sources=sources, conditions=beside))
             arrays = table.in_si(gains)
             first = table.first_time(gains)
             clock = first if clock is None else clock

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flexarm_env.control.law import ControlLaw
 from flexarm_env.display import Shown
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import write_whole
@@ -48,6 +49,7 @@ class Recording(Shown):
         reference: (n,) [rad], the commanded arm angle, or None.
         conditions: known conditions in SI. A replay takes up `payload` [kg] alone. The others inform a person, also
             `start` [s], how long the run had gone on before the first sample: times of effects count from that sample.
+        controller: the law under which it was made, if its column map states one.
         source: the path it was read from; "" if from none.
         sha256: of that file's content; "" if from none.
         notes: one line each on how the file was read, where a person might expect otherwise.
@@ -61,6 +63,7 @@ class Recording(Shown):
     signals: dict[str, Floats]
     reference: Floats | None = None
     conditions: dict[str, float] = field(default_factory=dict)
+    controller: ControlLaw | None = None
     source: str = ""
     sha256: str = ""
     notes: tuple[str, ...] = ()
@@ -199,7 +202,8 @@ class Recording(Shown):
             _check_signal(recording, require_signal, " to its header" if layout is None else " to [columns]")
         except InputError as error:
             raise file_error(path, error) from None
-        return replace(recording, source=str(path), sha256=checksum)
+        controller = None if layout is None else layout.controller
+        return replace(recording, controller=controller, source=str(path), sha256=checksum)
 
     @classmethod
     def read_all(

@@ -278,3 +278,13 @@ def test_damaged_files_are_read_or_refused(tmp_path: Path, data: st.DataObject, 
             message = str(error)
         assert len(message) < 1000
         assert not message or message.isprintable()
+
+
+def test_a_file_of_a_big_endian_machine() -> None:
+    def swapped(kind: int, data: bytes) -> bytes:
+        return struct.pack(">II", kind, len(data)) + data + bytes(-len(data) % 8)
+
+    parts = [(6, struct.pack(">II", 6, 0)), (5, struct.pack(">ii", 1, 6)), (1, b"t"), (9, TIME.astype(">f8").tobytes())]
+    content = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x01\x00MI" + swapped(14, b"".join(swapped(*part) for part in parts))
+    assert np.array_equal(find_numbers(variables(content), "t"), TIME[None, :])
+    assert np.array_equal(scipy.io.loadmat(io.BytesIO(content))["t"], TIME[None, :])

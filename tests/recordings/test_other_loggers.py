@@ -261,3 +261,17 @@ def test_a_column_beyond_the_rows_names_the_first(tmp_path: Path) -> None:
     assert "row 3, column 'arm_angle': index 2, but the rows have 2 cells, as '1,1'; count from 0" in refusal(
         save(tmp_path, "\n7\n1,1\n2,2\n"), columns=table
     )
+
+
+def test_conditions_and_a_controller_beside_maps_that_refine(tmp_path: Path) -> None:
+    law = "[controller]\nkind = 'PD'\n"
+    assert load_columns({"current": {}, "arm_angle": {"sign": -1}}).refines
+    with pytest.raises(InputError, match="has conditions in columns"):
+        load_columns({"arm_angle": {"sign": -1}, "conditions": {"gain": {"column": "K", "unit": "V"}}})
+    with pytest.raises(InputError, match="add current = .* there"):
+        load_columns(save(tmp_path, f"[columns]\narm_angle = {{ sign = -1 }}\n{law}", "map.toml"))
+    table = {"time": {"rate": 10}, "current": {"column": "i", "unit": "A"}, "arm_angle": {"column": "q", "unit": "rad"}}
+    conditions = {"gain": {"column": "K", "unit": "1"}}
+    recording = Recording.read(save(tmp_path, "i,q,K\n1,2,7\n1,3,7\n"), {**table, "conditions": conditions})
+    assert recording.conditions == {"gain": 7.0}
+    assert recording.time.tolist() == [0, 0.1]

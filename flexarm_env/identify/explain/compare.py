@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.explain.bands import band_rows
-from flexarm_env.identify.explain.comparison import Comparison, Replay, Row
+from flexarm_env.identify.explain.comparison import Comparison, LoopRow, Replay, Row
 from flexarm_env.identify.progress import ProgressCallback
 from flexarm_env.identify.replay.dataset import Dataset, prepare
 from flexarm_env.identify.replay.preflight import preflight
 from flexarm_env.identify.replay.readings import count_of, errors_of
-from flexarm_env.identify.replay.replay import replay, window_observers, window_replay
+from flexarm_env.identify.replay.replay import loop_replay, replay, window_observers, window_replay
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.settings import SETTINGS, Settings
+from flexarm_env.plant.plant import Plant
 from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
@@ -56,11 +58,14 @@ def compare(
         plant = plants[run.payload]
         windows = window_replay(plant, run, dataset, observers[run.payload])
         free = replay(plant, run, dataset)
-        replays.append(_replay(run, dataset.signals, free, windows, regimes(run, dataset)))
+        one = _replay(run, dataset.signals, free, windows, regimes(run, dataset))
+        replays.append(replace(one, closed=_closed(plant, run, dataset, arm.input)))
     rows = list(_rows(replays, dataset))
     whole = rows[-1]
     noise = {s: float(n) for s, n in zip(dataset.signals, dataset.noise, strict=True)}
-    return Comparison(arm, rows, replays, noise, whole.error, whole.free_run, notes)
+    loop_rows = list(_loop_rows(replays, dataset, noise))
+    closed_loop = _closed_loop_error(replays, noise) if loop_rows else None
+    return Comparison(arm, rows, replays, noise, whole.error, whole.free_run, notes, closed_loop, loop_rows)
 
 
 def regimes(run: Run, dataset: Dataset) -> NDArray[np.int64]:
@@ -93,6 +98,30 @@ def _replay(run: Run, signals: Sequence[str], free: Floats, windows: Floats, reg
         return {signal: values[:, i] for i, signal in enumerate(signals)}
 
     return Replay(run.name, run.time, columns(run.measured), columns(free), columns(windows), regime)
+
+
+def _closed(plant: Plant, run: Run, dataset: Dataset, kind: str) -> dict[str, Floats]:
+    """Replay a run in closed loop; give its signals, and its command by its kind; nothing where the loop is not known."""
+    if run.loop is None:
+        return {}
+    found = loop_replay(plant, run, run.loop, dataset)
+    return {**{signal: found.readings[:, i] for i, signal in enumerate(dataset.signals)}, kind: found.command}
+
+
+def _loop_rows(replays: Sequence[Replay], dataset: Dataset, noise: Mapping[str, float]) -> Iterator[LoopRow]:
+    for one, run in zip(replays, dataset.runs, strict=True):
+        for name, closed in one.closed.items():
+            measured = one.measured.get(name, run.command)
+            rms, size = (float(np.linalg.norm(values)) for values in (measured - closed, measured))
+            error = rms / noise[name] / float(np.sqrt(len(closed))) if name in noise else float("nan")
+            relative = 100 * rms / size if size else float("nan")
+            yield LoopRow(one.name, name, error, fit_percent(measured, closed), relative)
+
+
+def _closed_loop_error(replays: Sequence[Replay], noise: Mapping[str, float]) -> float:
+    """Measure the error over noise of all recordings in closed loop; those without a loop count in a free run."""
+    scaled = [(one.measured[s] - (one.closed or one.free)[s]) / sigma for one in replays for s, sigma in noise.items()]
+    return float(np.sqrt(np.mean(np.concatenate(scaled) ** 2)))
 
 
 def _rows(replays: Sequence[Replay], dataset: Dataset) -> Iterator[Row]:

@@ -13,6 +13,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 from flexarm_env.experiments.payload import check_payload, plants_by_payload, stated_payload
 from flexarm_env.identify.replay.initial_state import Stretch, find_start
+from flexarm_env.identify.replay.loop import Loop, find_loop
 from flexarm_env.identify.replay.readings import extent, measured_time, share_of
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.replay.scales import scales_of
@@ -57,15 +58,27 @@ class Dataset:
         """Count the readings of the held-out or the fitted part."""
         return sum(run.readings(~run.train if held_out else run.train) for run in self.runs)
 
+    @property
+    def has_loop(self) -> bool:
+        """Whether any run is replayed in closed loop."""
+        return any(run.loop is not None for run in self.runs)
+
     def plants(self, arm: Arm) -> dict[float, Plant]:
         """Build an arm's plants by the payload [kg] of the runs, which carry it."""
         return plants_by_payload(arm, (run.payload for run in self.runs), self.interval)
 
-    def set_initial_state(self, plant: Plant, run: Run) -> None:
-        """Fit the initial state to the first samples of a run, and put a plant into it."""
+    def set_initial_state(self, plant: Plant, run: Run, loop: Loop | None = None) -> None:
+        """Fit the initial state to the first samples of a run, and put a plant into it.
+
+        Args:
+            plant: a compiled arm.
+            run: the recording.
+            loop: in which the samples are replayed; under the recorded command without.
+        """
         count = run.start.samples
         stretch = run.command[:count], run.intervals[:count], run.measured[:count]
-        Stretch(run.start, *stretch, self.noise, self.settings.initial_states).set_fitted_state(plant)
+        loop = None if loop is None else loop.first(count)
+        Stretch(run.start, *stretch, self.noise, self.settings.initial_states, loop).set_fitted_state(plant)
 
     def nothing_held_out(self) -> Dataset:
         """Give the same runs with nothing held out."""
@@ -94,7 +107,7 @@ def prepare(arm: Arm, recordings: Sequence[Recording], settings: Settings = SETT
     interval = float(np.median([r.sample_time for r in recordings]))
     arm = replace(arm, sensors={s: arm.sensors[s] for s in signals})
     noise = _noise(arm, signals, measured, settings)
-    runs = tuple(_run(r, m, signals, noise, interval, settings) for r, m in zip(recordings, measured, strict=True))
+    runs = tuple(_run(arm, r, m, noise, interval, settings) for r, m in zip(recordings, measured, strict=True))
     scales = scales_of(arm, runs, signals, settings.reference)
     return arm, Dataset(runs, tuple(signals), interval, noise, scales, settings)
 
@@ -118,12 +131,15 @@ def _noise(arm: Arm, signals: list[str], measured: list[Floats], settings: Setti
     return np.array([n if n > 0.0 else max(numbers.default_noise * w, numbers.least_noise) for n, w in pairs])
 
 
-def _run(recording: Recording, measured: Floats, signals: list[str], noise: Floats, interval: float, settings: Settings) -> Run:
+def _run(arm: Arm, recording: Recording, measured: Floats, noise: Floats, interval: float, settings: Settings) -> Run:
     numbers = settings.preparation
+    signals = list(arm.signals)
     time = recording.time - recording.time[0]
     steps, shown = np.diff(time), measured_time(time, measured)
     # Wider than in a simulation, where only rounding counts as even: tables for one interval make replays fast.
     uneven = np.abs(steps - interval).max() > numbers.uneven * interval
+    start = find_start(time, measured, signals, noise, settings.initial_states)
+    loop, note = find_loop(arm, recording, signals, start.speed, numbers)
     return Run(
         name=recording.name,
         time=time,
@@ -131,6 +147,8 @@ def _run(recording: Recording, measured: Floats, signals: list[str], noise: Floa
         measured=np.ascontiguousarray(measured),
         intervals=np.append(steps, interval) if uneven else NO_INTERVALS,
         train=shown < (1.0 - numbers.held_out_share) * shown[-1],
-        start=find_start(time, measured, signals, noise, settings.initial_states),
+        start=start,
         payload=stated_payload(recording),
+        loop=loop,
+        loop_note=note,
     )

@@ -14,7 +14,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.observer import innovation_sigma, observer_gains
 from flexarm_env.identify.replay.readings import bounded
-from flexarm_env.identify.replay.replay import replay, window_observers, window_replay
+from flexarm_env.identify.replay.replay import replay, whole_replay, window_observers, window_replay
 from flexarm_env.identify.settings import LEAST_EXCESS
 from flexarm_env.plant.plant import Plant
 
@@ -33,11 +33,18 @@ class Score:
     Attributes:
         windows: in windows of 1 s from estimated states; where torque noise is stated, the rms of the innovations over their
             standard deviation under both noises, since such a disturbance drives any free replay away within a window.
-        free_run: each recording replayed once from its start.
+        free_run: each recording replayed once from its start under the recorded command.
+        closed_loop: the same under the control law, where recordings were made in a known loop; None where there is none.
     """
 
     windows: float
     free_run: float
+    closed_loop: float | None = None
+
+    @property
+    def whole_run(self) -> float:
+        """Error of whole recordings: in closed loop where it is known, since an axis that nothing holds drifts in a free run."""
+        return self.free_run if self.closed_loop is None else self.closed_loop
 
     @property
     def excess(self) -> float:
@@ -45,26 +52,26 @@ class Score:
         return excess(self.windows)
 
     @property
-    def free_run_excess(self) -> float:
-        """Excess of the error of the free run, as a variance."""
-        return excess(self.free_run)
+    def whole_run_excess(self) -> float:
+        """Excess of the error of whole recordings, as a variance."""
+        return excess(self.whole_run)
 
     @property
     def mean_excess(self) -> float:
         """Geometric mean of both."""
-        return math.sqrt(self.excess * self.free_run_excess)
+        return math.sqrt(self.excess * self.whole_run_excess)
 
     def is_better_than(self, other: Score) -> bool:
         """Whether the product of both errors is smaller."""
-        return self.windows * self.free_run < other.windows * other.free_run
+        return self.windows * self.whole_run < other.windows * other.whole_run
 
 
 class ErrorMeasure(Protocol):
     """How errors are measured."""
 
     @property
-    def judges_free_run(self) -> bool:
-        """Whether the free run says anything about the model."""
+    def judges_whole_run(self) -> bool:
+        """Whether a replay of whole recordings says anything about the model."""
 
     def score(self, arm: Arm, dataset: Dataset, held_out: bool) -> Score:
         """Measure the errors of an arm on the held-out or the fitted part."""
@@ -77,7 +84,7 @@ class ErrorMeasure(Protocol):
 class WindowErrors:
     """Errors in windows of 1 s from estimated states, and of one free run."""
 
-    judges_free_run: bool = True
+    judges_whole_run: bool = True
 
     def score(self, arm: Arm, dataset: Dataset, held_out: bool) -> Score:
         """Measure the errors of an arm on the held-out or the fitted part."""
@@ -90,7 +97,7 @@ class WindowErrors:
             windows = window_replay(plant, run, dataset, observers[run.payload], first)
             totals += [_squares(run.errors(y, dataset.noise)[rows]) for y in (windows, replay(plant, run, dataset))]
         windows, free = np.sqrt(totals / dataset.readings(held_out))
-        return Score(float(windows), float(free))
+        return Score(float(windows), float(free), _closed_loop_error(plants, dataset, held_out))
 
     def brief(self, arm: Arm, dataset: Dataset) -> float:
         """Measure the held-out error in windows, from states that two corrected replays estimate."""
@@ -109,7 +116,7 @@ class WindowErrors:
 class InnovationErrors:
     """Innovations of the observer that the stated torque noise gives."""
 
-    judges_free_run: bool = False
+    judges_whole_run: bool = False
 
     def score(self, arm: Arm, dataset: Dataset, held_out: bool) -> Score:
         """Measure the errors of an arm on the held-out or the fitted part."""
@@ -125,7 +132,7 @@ class InnovationErrors:
             free = run.errors(replay(plant, run, dataset), dataset.noise)
             totals += [_squares(errors[rows]) for errors in (corrected, free)]
         innovations, free_run = np.sqrt(totals / dataset.readings(held_out))
-        return Score(float(innovations), float(free_run))
+        return Score(float(innovations), float(free_run), _closed_loop_error(plants, dataset, held_out))
 
     def brief(self, arm: Arm, dataset: Dataset) -> float:
         """Measure the held-out innovations."""
@@ -142,6 +149,11 @@ def score(arm: Arm, dataset: Dataset, held_out: bool = True) -> Score:
     return error_measure(arm).score(arm, dataset, held_out)
 
 
+def closed_loop_errors(scores: Mapping[str, Score]) -> dict[str, float]:
+    """Select the errors in closed loop; none where no loop is known."""
+    return {name: score.closed_loop for name, score in scores.items() if score.closed_loop is not None}
+
+
 def window_errors(arm: Arm, plants: Mapping[float, Plant], dataset: Dataset) -> list[Floats]:
     """Compute the errors over noise (samples, signals) of each whole run in windows; 0 where nothing was measured."""
     observers = {payload: window_observers(arm, plant, dataset) for payload, plant in plants.items()}
@@ -150,6 +162,17 @@ def window_errors(arm: Arm, plants: Mapping[float, Plant], dataset: Dataset) -> 
         replayed = window_replay(plants[run.payload], run, dataset, observers[run.payload])
         errors.append(bounded(run.errors(replayed, dataset.noise)))
     return errors
+
+
+def _closed_loop_error(plants: Mapping[float, Plant], dataset: Dataset, held_out: bool) -> float | None:
+    """Measure the error of whole recordings in closed loop; recordings without a loop count in a free run."""
+    if not dataset.has_loop:
+        return None
+    total = 0.0
+    for run in dataset.runs_to_replay(held_out):
+        rows = ~run.train if held_out else run.train
+        total += _squares(run.errors(whole_replay(plants[run.payload], run, dataset), dataset.noise)[rows])
+    return float(np.sqrt(total / dataset.readings(held_out)))
 
 
 def _squares(errors: Floats) -> float:

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
+from flexarm_env.identify.replay.closed_loop import play_loop
+from flexarm_env.identify.replay.loop import Loop
 from flexarm_env.identify.replay.readings import bounded, count_of, errors_of, rms_of
 from flexarm_env.identify.settings import InitialStates
 from flexarm_env.plant.plant import NO_GAINS, NOT_MEASURED, Plant
@@ -148,6 +150,7 @@ class Stretch:
         measured: (samples, signals), SI units; NaN where nothing was measured.
         noise: (signals,) standard deviations.
         settings: thresholds.
+        loop: in which the stretch is replayed; under the commands without.
     """
 
     start: Start
@@ -156,6 +159,7 @@ class Stretch:
     measured: Floats
     noise: Floats
     settings: InitialStates
+    loop: Loop | None = None
 
     @property
     def command_before(self) -> float:
@@ -182,7 +186,10 @@ class Stretch:
     def _residual(self, plant: Plant, state: Floats) -> Floats:
         """Compute the error of every reading over its standard deviation (rows,); 0 where nothing was measured."""
         plant.place(state, self.command_before)
-        readings = plant.replay(self.command, self.intervals, NO_GAINS, NOT_MEASURED)
+        if self.loop is None:
+            readings = plant.replay(self.command, self.intervals, NO_GAINS, NOT_MEASURED)
+        else:
+            readings = play_loop(plant, self.loop, self.intervals).readings
         return bounded(-errors_of(self.measured, readings, self.noise)).ravel()
 
     def _likelier(self, plant: Plant, rest: Floats, fitted: Floats) -> Floats:

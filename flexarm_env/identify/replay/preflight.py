@@ -18,6 +18,8 @@ def preflight(dataset: Dataset) -> tuple[list[str], bool]:
     for run in dataset.runs:
         if run.payload:
             notes.append(f"{run.name}: the arm carries the {run.payload:g} kg that the recording states as its payload")
+        if run.loop_note:
+            notes.append(f"{run.name}: {run.loop_note}")
         if len(run.intervals):
             notes.append(f"{run.name}: sampled unevenly, {run.intervals.min():.4g} to {run.intervals.max():.4g} s")
         at_limit = np.abs(run.command) >= numbers.at_limit * np.abs(run.command).max()

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.identify.replay.initial_state import Start
+from flexarm_env.identify.replay.loop import Loop
 from flexarm_env.identify.replay.readings import count_of, errors_of, extent, measured_time
 
 Floats = NDArray[np.float64]
@@ -26,6 +27,8 @@ class Run:
         train: (samples,) true where calibrations see the sample.
         start: evidence of its first samples on its initial state.
         payload: known mass at the tip [kg], beside the arm's own.
+        loop: the control loop in which it was recorded, where that is known.
+        loop_note: on the control law, or on the reason why there is no loop; "" where none is stated.
     """
 
     name: str
@@ -36,6 +39,8 @@ class Run:
     train: NDArray[np.bool_]
     start: Start
     payload: float = 0.0
+    loop: Loop | None = None
+    loop_note: str = ""
 
     def errors(self, modelled: Floats, sigma: Floats | float = 1.0, rows: slice = slice(None)) -> Floats:
         """Compute measured less modelled readings (rows, signals) over sigma; 0 where nothing was measured."""
@@ -64,4 +69,5 @@ class Run:
             measured=self.measured[:count],
             intervals=self.intervals[:count],
             train=self.train[:count],
+            loop=None if self.loop is None else self.loop.first(count),
         )

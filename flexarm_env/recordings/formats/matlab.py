@@ -41,7 +41,7 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
     longest = max(map(len, values.values()), default=0)
     if "time" in values and len(values["time"]) == 1 < longest:
         values["time"], sources["time"] = _even_time(float(values["time"][0]), sources["time"], longest)
-    lengths = {name: len(value) for name, value in values.items()}
+    lengths = {name: len(value) for name, value in values.items() if columns is None or name not in columns.conditions}
     if len(set(lengths.values())) > 1:
         raise InputError(f"its variables differ in length ({lengths}); give vectors of one length")
     return Table(values, sources)
