@@ -154,7 +154,8 @@ def test_a_right_import_passes(tmp_path, place, line):
 
 def test_every_import_is_declared():
     extras = METADATA["optional-dependencies"]
-    requirements = [*METADATA["dependencies"], *extras["plots"], *extras["lab"], *extras["render"], *extras["train"]]
+    requirements = [*METADATA["dependencies"], *extras["plots"], *extras["lab"], *extras["logs"]]
+    requirements += [*extras["render"], *extras["train"]]
     declared = {re.match(r"[\w.-]+", line)[0].lower() for line in requirements}
     installed = importlib.metadata.packages_distributions()
     files = (PROJECT / PACKAGE).rglob("*.py")

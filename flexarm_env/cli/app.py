@@ -219,7 +219,8 @@ def thesis(
 @app.command()
 def lab(
     recordings: Annotated[
-        list[Path] | None, typer.Argument(metavar="[RECORDING…]", help="CSV or .mat files, or folders.", show_default=False)
+        list[Path] | None,
+        typer.Argument(metavar="[RECORDING…]", help="Recordings (.csv, .mat, …), or folders.", show_default=False),
     ] = None,
     arm: ArmName = "thesis-fem",
     columns: Columns = None,

@@ -19,6 +19,7 @@ def layout_of(path: Path, columns: ColumnMap, require_signal: bool = True) -> tu
 
     The map is followed unless the header is FlexArm's own. It is followed there, too, where the file has every column that
     it names. A map of column numbers must agree with such a header in names and units, because any file has those numbers.
+    A map that names no places refines the header, and one of several files has the place of each column.
 
     Args:
         path: the file.
@@ -29,8 +30,10 @@ def layout_of(path: Path, columns: ColumnMap, require_signal: bool = True) -> tu
         The map, or None to follow the header; and a note where they differ, else "".
     """
     own, texts = _own_header(path)
-    if "time" not in own:
+    if columns.joins or not own or ("time" not in own and not columns.refines):
         return columns, ""
+    if columns.refines:
+        return _refinement(columns, own, require_signal)
     by_number = all(source.key == "index" for source in columns.sources.values())
     found = _found(columns, texts)
     differing = [name for name, source in found.items() if own.get(name) != source]
@@ -41,6 +44,13 @@ def layout_of(path: Path, columns: ColumnMap, require_signal: bool = True) -> tu
     if by_number or not differing:
         return None, ""
     return (columns, "") if require_signal else (None, _note("its own header", "the arm's [columns] differ", differing))
+
+
+def _refinement(columns: ColumnMap, own: dict[str, Source], require_signal: bool) -> tuple[ColumnMap, str]:
+    """Limit a map that refines a header to the columns that commands have; recordings must have all."""
+    kept = {name: source for name, source in columns.sources.items() if require_signal or name in own}
+    changed = [name for name, source in kept.items() if source.key == "header"]
+    return replace(columns, sources=kept), _note("its own header", "the arm's [columns] refine it", changed)
 
 
 def _own_header(path: Path) -> tuple[dict[str, Source], list[str]]:

@@ -142,7 +142,10 @@ def _row_by_row(
     """Yield the numbers of each row; raise InputError at the first fault."""
     for index, name in labels.items():
         if index >= width:
-            raise InputError(f"column '{name}': index {index}, but the rows have {width} cells; count from 0")
+            row, line = next(one for one in zip(rows, lines, strict=True) if count_cells(one[0], layout.delimiter) == width)
+            raise InputError(
+                f"row {line + 1}, column '{name}': index {index}, but the rows have {width} cells, as {quoted(row)}; count from 0"
+            )
     for row, line in zip(rows, lines, strict=True):
         where = f"row {line + 1}"
         try:
@@ -160,20 +163,23 @@ def _row_by_row(
 
 
 def _width_hint(row: str, found: int, expected: int, delimiter: str) -> str:
+    stands = f"it is {quoted(row)}"
     if row.lstrip().startswith("#"):
-        return "a remark stands before the header; move it there or remove it"
+        return f"a remark stands before the header; {stands}"
     if found < expected:
-        return "is the row cut off?"
-    commas = " Or decimal commas: write 0.5, not 0,5" if delimiter == "," else ""
-    return f"are two rows run together, or does the header lack a name?{commas}"
+        return f"is the row cut off? {stands}"
+    commas = " Or are its commas decimal ones? Export with decimal points, or with ';' between cells" if delimiter == "," else ""
+    return f"are two rows run together, or does the header lack a name? {stands}.{commas}"
 
 
 def _not_a_number(cell: str) -> str:
     if not cell.strip():
         return "is empty; a replay needs time, command and reference in every row; only a signal may be absent"
     if _COMMA_AND_THREE.fullmatch(cell):
-        whole = quoted(cell.strip().replace(",", ""))[1:-1]
-        return f"{quoted(cell)} has a comma, which may mark thousands or decimals; write {whole} or a decimal point"
+        return (
+            f"{quoted(cell)} has a comma, which may mark thousands or decimals;"
+            " export without marks of thousands, or say decimal = ',' in [columns] if it is the decimal mark"
+        )
     if _DECIMAL_COMMA.fullmatch(cell):
-        return f"{quoted(cell)} has a decimal comma; write {quoted(cell.strip().replace(',', '.'))[1:-1]}"
-    return f"{quoted(cell)} is not a number; correct it or remove the row"
+        return f"{quoted(cell)} has a decimal comma; say decimal = ',' in [columns], or export with decimal points"
+    return f"{quoted(cell)} is not a number; correct it"

@@ -7,6 +7,7 @@ from pathlib import Path
 from flexarm_env.errors import InputError
 
 _LONGEST = 40
+_LONGEST_MESSAGE = 800
 
 
 def quoted(text: str) -> str:
@@ -15,5 +16,6 @@ def quoted(text: str) -> str:
 
 
 def file_error(path: Path, what: object) -> InputError:
-    """Make the error of a file. Characters of path or content that would break the line are escaped."""
-    return InputError("".join(c if c.isprintable() else repr(c)[1:-1] for c in f"{path}: {what}"))
+    """Make the error of a file. Characters of path or content that would break the line are escaped, long content is cut."""
+    place, text = ("".join(c if c.isprintable() else repr(c)[1:-1] for c in one) for one in (f"{path}: ", str(what)))
+    return InputError(place + (text if len(text) <= _LONGEST_MESSAGE else f"{text[: _LONGEST_MESSAGE - 3]}..."))

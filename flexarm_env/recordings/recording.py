@@ -22,8 +22,9 @@ from flexarm_env.recordings.column_maps import load_columns
 from flexarm_env.recordings.columns import UNITS, ColumnMap, Source, check_calibration, check_names
 from flexarm_env.recordings.conditions import CONDITIONS
 from flexarm_env.recordings.corrections import corrected
-from flexarm_env.recordings.files import PathLike, files_of, read_bytes
+from flexarm_env.recordings.files import PathLike, read_bytes
 from flexarm_env.recordings.formats.catalogue import format_of
+from flexarm_env.recordings.joined import read_joined, recording_files, run_name
 from flexarm_env.recordings.messages import file_error
 from flexarm_env.sensors import known_sensors
 
@@ -189,14 +190,20 @@ class Recording(Shown):
         check_calibration(gains)
         path = Path(path)
         try:
-            content = read_bytes(path)
-            table = format_of(path).table(content, layout)
-            recording = _recording(path.stem, table.in_si(gains), table.conditions, table.lines, table.sources)
+            if layout is not None and layout.joins:
+                table, checksum = read_joined(path, layout, gains)
+                name = run_name(layout, path) or path.resolve().parent.name
+                recording = _recording(name, table.values, table.conditions, (), table.sources)
+            else:
+                content = read_bytes(path)
+                table = format_of(path).table(content, layout)
+                checksum = hashlib.sha256(content).hexdigest()
+                recording = _recording(path.stem, table.in_si(gains), table.conditions, table.lines, table.sources)
             _check_signal(recording, require_signal, " to its header" if layout is None else " to [columns]")
         except InputError as error:
             raise file_error(path, error) from None
         controller = None if layout is None else layout.controller
-        return replace(recording, controller=controller, source=str(path), sha256=hashlib.sha256(content).hexdigest())
+        return replace(recording, controller=controller, source=str(path), sha256=checksum)
 
     @classmethod
     def read_all(
@@ -222,8 +229,8 @@ class Recording(Shown):
             >>> [run.name for run in Recording.read_all("runs")]
             ['pulse', 'square']
         """
-        files = files_of([paths] if isinstance(paths, (str, os.PathLike)) else paths)
         layout = None if columns is None else load_columns(columns)
+        files = recording_files([paths] if isinstance(paths, (str, os.PathLike)) else paths, layout)
         recordings = [cls.read(file, layout, calibration, require_signal) for file in files]
         return with_distinct_names(recordings)
 
@@ -354,8 +361,8 @@ def with_distinct_names(recordings: Sequence[Recording]) -> list[Recording]:
     """Rename recordings so that their names differ: by their folder, else by their path."""
     sources = [Path(recording.source) for recording in recordings]
     for names in (
-        [source.stem for source in sources],
-        [f"{source.parent.name}/{source.stem}" for source in sources],
+        [recording.name for recording in recordings],
+        [f"{source.parent.name}/{recording.name}" for source, recording in zip(sources, recordings, strict=True)],
         [str(source) for source in sources],
     ):
         if len(set(names)) == len(names):
