@@ -137,7 +137,7 @@ class Preparation:
     longest_lag: float = tuned(0.05, "Longest lag of a recorded command behind its control law that is tried.", unit="s")
     largest_law_error: float = tuned(
         0.25,
-        "A control law that misses the recorded command by more than this share is not that of the recording.",
+        "A control law that misses the recorded command by more than this share at any lag is not that of the recording.",
         "laws of EMPS and CU Boulder miss by 0.002 to 0.15; CU Boulder's with another recording's gains, 8 for 6, by 0.33",
     )
     late_least_shown: float = tuned(
