@@ -624,7 +624,9 @@ class Inspecting:
     moves: float = tuned(20.0, "A signal moves if its range exceeds this multiple of its noise.")
     beyond_limit: float = tuned(1.01, "Commands above this multiple of the limit are beyond it.")
     fewest_changes: int = tuned(20, "Changes from which held readings are told.")
-    most_changing: float = tuned(0.6, "A held signal changes in fewer than this share of the rows.", "repeats of 2 change in half")
+    most_changing: float = tuned(
+        0.6, "A held signal changes in fewer than this share of the rows.", "repeats of 2 change in half"
+    )
     more_than_a_step: float = tuned(1.5, "A change above this multiple of the step is no flicker of the last digit.")
     large_changes: float = tuned(0.2, "Share of such changes in a held signal.")
     padding: int = tuned(4, "Length of the spectrum over that of the recording.")
@@ -638,7 +640,7 @@ class Inspecting:
     smooth: float = tuned(0.35, "Usual changes of a signal that wraps are below this share of the modulus.")
     goes_on: int = tuned(5, "Readings on each side of a jump that show whether the motion goes on, or the reading stays.")
     least_motion: float = tuned(3.0, "Motion over them, over the noise.")
-    wild: float = tuned(8.0, "A wild reading stands off its neighbours by this multiple of the usual change.")
+    wild: float = tuned(5.0, "A wild reading stands off its neighbours by this multiple of the usual change.")
     wild_noise: float = tuned(40.0, "And by this multiple of the noise.")
     wild_steps: float = tuned(8.0, "And by this multiple of the step.")
     longest_loss: float = tuned(0.2, "Longest stretch of lost readings, over the recording.")
@@ -649,7 +651,8 @@ class Inspecting:
     evidence: float = tuned(25.0, "Logarithm of the odds from which readings repeat by more than chance.")
     stretches: int = tuned(20, "Parts of a recording of which the one with the most repeated readings is the measure.")
     least_repeats: float = tuned(0.05, "Least share of repeated readings that is taken for usual.")
-    flickers: float = tuned(0.5, "Stated noise over the step from which readings flicker at rest.")
+    flickers: float = tuned(0.1, "Share of readings at which a signal turns back, from which it counts as noisy.")
+    piled_up: float = tuned(4.0, "Surplus of readings at a rail over those a step before it, in standard deviations.")
     cut_slope: float = tuned(1.5, "Slope into a rail, in steps per sample.")
     near_zero: float = tuned(0.02, "A level below this share of the range is that of rest.")
     quiet: float = tuned(2.0, "A signal is quiet if it scatters less than this multiple of its noise.")
@@ -657,8 +660,7 @@ class Inspecting:
     jump: float = tuned(4.0, "A jump exceeds the largest change elsewhere by this factor.")
     jump_noise: float = tuned(20.0, "And the noise by this one.")
     stays: float = tuned(0.5, "Share of a jump that is left after some readings.")
-    first_readings: int = tuned(15, "Readings that show how a run begins.", unit="samples")
-    as_begun: float = tuned(3.0, "Mean distance from the first readings, over the noise, of a run that begins as the first did.")
+    as_begun: float = tuned(6.0, "Distance from the first reading, over the noise, of a run that begins as the first did.")
 
 
 @dataclass(frozen=True)

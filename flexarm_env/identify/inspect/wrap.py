@@ -26,7 +26,7 @@ def wrap(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
         if modulus:
             times = "once" if len(steps) == 1 else f"{len(steps)} times"
             text = f"jumps by {shown(signal, modulus)} {times}, its whole range: it wraps"
-            hint = f'{signal} = {{ wrap = "{modulus:.5g} {UNITS[signal]}" }}'
+            hint = f'{signal} = {{ wrap = "{modulus:.8g} {UNITS[signal]}" }}'
             found.append(fault(recording, signal, "wrap", modulus, text, hint, series.rows[steps + 1]))
     return found
 
