@@ -10,6 +10,9 @@ from flexarm_env.identify.inspect.free_run import FreeRun, Replayer, Table, repl
 from flexarm_env.identify.settings import MotionFaults, Settings
 from flexarm_env.recordings.recording import Recording
 
+#: Signals of the hub, which are readings of one motion.
+HUB = ("arm_angle", "motor_speed")
+
 
 @dataclass(frozen=True)
 class Evidence:
@@ -56,10 +59,18 @@ class Evidence:
         return any(self.agrees(signal) for signal in of_hub or self.signals)
 
     @property
-    def hub_is_sound(self) -> bool:
-        """Whether angle and speed are readings of one motion in the units of the model."""
-        hub, numbers = self.hub, self.numbers
-        return hub is not None and hub.share > numbers.in_step and hub.is_within(numbers.least_factor)
+    def gear_ratio(self) -> float:
+        """Turns of the motor for one of the hub."""
+        return self.arm.constants["drive"]["gear_ratio"]
+
+    @property
+    def hub_in_step(self) -> bool:
+        """Whether angle and speed are readings of one motion."""
+        return self.hub is not None and self.hub.share > self.numbers.in_step
+
+    def others(self, signal: str) -> list[Agreement]:
+        """List the agreements of all signals but one, without a lag."""
+        return [found for other, found in self.at_once.items() if other != signal]
 
 
 def gather(arm: Arm, recording: Recording, settings: Settings) -> Evidence:
@@ -70,4 +81,6 @@ def gather(arm: Arm, recording: Recording, settings: Settings) -> Evidence:
     """
     prepared = replayer(arm, recording, settings)
     run = prepared.free_run()
-    return Evidence(arm, recording, prepared, run, run.at_once(), run.late(), run.hub(arm.constants["drive"]["gear_ratio"]))
+    both = set(HUB) <= set(run.signals)
+    hub = run.hub(arm.constants["drive"]["gear_ratio"]) if both else None
+    return Evidence(arm, recording, prepared, run, run.at_once(), run.late(), hub)

@@ -51,13 +51,18 @@ class FreeRun:
         """Compare every signal with its model, at the lag of each."""
         return {signal: agreement_late(*self._pair(signal, signal), self.cell, self.numbers) for signal in self.signals}
 
-    def hub(self, gear_ratio: float) -> Agreement | None:
-        """Compare the arm's angle with the integral of the motor's speed over the gear ratio; None without both."""
-        if not {"arm_angle", "motor_speed"} <= set(self.signals):
-            return None
-        angle, speed = (self.measured[:, self.signals.index(signal)] for signal in ("arm_angle", "motor_speed"))
-        turned = np.cumsum(np.where(np.isfinite(speed), speed, 0.0)) - 0.5 * speed
-        return agreement(angle, turned * (self.cell / gear_ratio), self.cell, self.numbers)
+    def hub(self, gear_ratio: float, angle: str = "arm_angle", speed: str = "motor_speed") -> Agreement:
+        """Compare the column of an angle with the integral of that of a motor's speed over the gear ratio."""
+        return agreement(*self._turned(gear_ratio, angle, speed), self.cell, self.numbers)
+
+    def hub_late(self, gear_ratio: float) -> Agreement:
+        """Compare them at the lag of the angle behind the speed at which they agree best."""
+        return agreement_late(*self._turned(gear_ratio, "arm_angle", "motor_speed"), self.cell, self.numbers)
+
+    def _turned(self, gear_ratio: float, angle: str, speed: str) -> tuple[Floats, Floats]:
+        angles, speeds = (self.measured[:, self.signals.index(signal)] for signal in (angle, speed))
+        turned = np.cumsum(np.where(np.isfinite(speeds), speeds, 0.0)) - 0.5 * speeds
+        return angles, turned * (self.cell / gear_ratio)
 
     def _pair(self, signal: str, model: str) -> tuple[Floats, Floats]:
         return self.measured[:, self.signals.index(signal)], self.modelled[:, self.signals.index(model)]

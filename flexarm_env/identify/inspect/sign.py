@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from flexarm_env.identify.inspect.evidence import Evidence
+from flexarm_env.identify.inspect.evidence import HUB, Evidence
 from flexarm_env.identify.inspect.fault import Fault
 
 
 def signs(evidence: Evidence) -> list[Fault]:
     """Find signals that run against the model while others run with it; the command where all run against it."""
     least = evidence.numbers.shared_motion
+    if evidence.hub is not None and evidence.hub_in_step and evidence.hub.gain < 0.0:
+        return [_fault(evidence, min(HUB, key=lambda signal: evidence.at_once[signal].gain), "")]
     shown = {signal: found.gain for signal, found in evidence.at_once.items() if found.share > least}
     against = [signal for signal, gain in shown.items() if gain < 0.0]
     if len(against) < len(shown):
