@@ -670,6 +670,39 @@ class Inspecting:
 
 
 @dataclass(frozen=True)
+class MotionFaults:
+    """Factors, signs, exchanged signals and clocks, found by a free run before anything is calibrated."""
+
+    cell: float = tuned(0.01, "Signals are averaged over cells of this length.", UNKNOWN, "s")
+    window: float = tuned(1.0, "Length of the windows in which a signal is compared.", UNKNOWN, "s")
+    least_window_cells: int = tuned(20, "Shortest window.", UNKNOWN, "cells")
+    longest_gap: int = tuned(3, "Longest gap between readings that is bridged.", UNKNOWN, "cells")
+    longest_lag: float = tuned(2.0, "Longest lag that is tried.", UNKNOWN, "s")
+    longest_lag_share: float = tuned(0.25, "Longest lag that is tried, over the length of the recording.")
+    lag_step: float = tuned(0.08, "First step from a likely lag to a better one.", UNKNOWN, "s")
+    lag_resolution: float = tuned(5e-4, "A step below this ends the search of a lag.", UNKNOWN, "s")
+    least_lag: float = tuned(0.05, "A clock is at fault above this lag.", UNKNOWN, "s")
+    same_lag: float = tuned(0.02, "Signals whose lags differ by less are late together.", UNKNOWN, "s")
+    same_shape: float = tuned(0.98, "A signal that the model explains to this share has the model's shape.")
+    alike: float = tuned(0.95, "A signal that the model explains to this share agrees with it.")
+    in_step: float = tuned(0.9, "Angle and speed that explain each other to this share are readings of one motion.")
+    shared_motion: float = tuned(0.4, "Signs and factors are judged where the model explains this share.")
+    exact: float = tuned(0.999, "A signal that the model explains to this share leaves hardly more than noise.")
+    similar: float = tuned(0.6, "A signal that the model explains to this share moves as the model does.")
+    unexplained: float = tuned(0.4, "A lag is worth it if it leaves less than this share of what is unexplained.")
+    plausible: float = tuned(2.5, "Gains of a sound signal are within this factor of 1, whatever the model lacks.")
+    far_apart: float = tuned(2.5, "Gains that differ by more are of different units.")
+    surely_a_unit: float = tuned(6.0, "A factor of the command beyond this is one of units, whatever the model lacks.")
+    spreads: float = tuned(3.0, "Spreads of the constants' priors beyond which a factor is none of theirs.")
+    near: float = tuned(1.05, "Gains within this factor of 1 agree.")
+    least_factor: float = tuned(1.25, "Gains within this factor of 1 belong to the calibration.")
+    command_factors: tuple[float, ...] = tuned((0.1, 0.3, 3.0, 10.0), "Factors of the command from which it is searched.")
+    command_steps: int = tuned(8, "Steps in which a factor of the command is refined.")
+    command_close: float = tuned(0.002, "Logarithm of a gain that ends the steps.")
+    known_factor: float = tuned(0.02, "Logarithm of the ratio to a known number within which a factor is named by it.")
+
+
+@dataclass(frozen=True)
 class Settings:
     """Every tuned number of the method, by stage.
 
@@ -699,6 +732,7 @@ class Settings:
     detection: DetectionLimits = DetectionLimits()
     explaining: Explaining = Explaining()
     inspecting: Inspecting = Inspecting()
+    motion: MotionFaults = MotionFaults()
 
     def numbers(self) -> Iterator[Number]:
         """Yield every number with its stage, meaning and origin."""
