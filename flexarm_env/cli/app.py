@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from flexarm_env.cli import arguments
-from flexarm_env.cli.options import ArmName, Columns, Effects, Json, Recordings, RecordingsOrNone, Report, Save, Seed
+from flexarm_env.cli.options import ArmName, Columns, Effects, Json, Rate, Recordings, RecordingsOrNone, Report, Save, Seed
 
 app = typer.Typer(
     add_completion=False,
@@ -41,6 +41,7 @@ def compare(
     arm: ArmName = "thesis",
     columns: Columns = None,
     effects: Effects = None,
+    rate: Rate = None,
     report: Report = None,
     json: Json = None,
 ) -> None:
@@ -51,10 +52,10 @@ def compare(
     from flexarm_env.terminal import identification, plain_data, tables
     from flexarm_env.terminal.provenance import provenance
 
-    result = identification.compare(model, runs)
+    result = identification.compare(model, runs, rate)
     hand_out("compare", arm, runs, None, json, plain_data.of_comparison(result), tables.comparison(result))
     if report is not None:
-        made = given.command_line("compare") | provenance("compare", arm, runs, None)
+        made = given.command_line("compare", rate=rate) | provenance("compare", arm, runs, None)
         identification.write_page(report, runs, result, None, made)
 
 
@@ -64,6 +65,7 @@ def diagnose(
     arm: ArmName = "thesis",
     columns: Columns = None,
     effects: Effects = None,
+    rate: Rate = None,
     report: Report = None,
     save: Save = None,
     next_run: Annotated[
@@ -90,7 +92,7 @@ def diagnose(
     from flexarm_env.terminal import identification, tables
     from flexarm_env.terminal.provenance import provenance
 
-    result = identification.diagnose(model, runs, seed, jobs)
+    result = identification.diagnose(model, runs, seed, jobs, rate)
     if next_run is not None and result.next_run is not None:
         write_whole(next_run, result.next_run.as_csv())
     elif next_run is not None:
@@ -99,8 +101,8 @@ def diagnose(
     if save is not None:
         result.arm.save(save)
     if report is not None:
-        made = given.command_line("diagnose", seed) | provenance("diagnose", arm, runs, seed)
-        identification.write_page(report, runs, identification.compare(result.nominal, runs), result, made)
+        made = given.command_line("diagnose", seed, rate) | provenance("diagnose", arm, runs, seed)
+        identification.write_page(report, runs, identification.compare(result.nominal, runs, rate), result, made)
     if result.verdict in ("unknown", "insufficient_data"):
         raise typer.Exit(1)
 
@@ -112,6 +114,7 @@ def add(
     arm: ArmName = "thesis",
     columns: Columns = None,
     effects: Effects = None,
+    rate: Rate = None,
     save: Save = None,
     seed: Seed = 0,
     json: Json = None,
@@ -123,7 +126,7 @@ def add(
     from flexarm_env.effects.catalogue import load_effect
     from flexarm_env.terminal import identification, plain_data, tables
 
-    result = identification.add(load_effect(effect).name if own else effect, model, runs, seed)
+    result = identification.add(load_effect(effect).name if own else effect, model, runs, seed, rate)
     hand_out("add", arm, runs, seed, json, plain_data.of_addition(result), tables.addition(result))
     if save is not None:
         result.arm.save(save)
@@ -138,6 +141,7 @@ def fit(
     arm: ArmName = "thesis",
     columns: Columns = None,
     effects: Effects = None,
+    rate: Rate = None,
     save: Save = None,
     seed: Seed = 0,
     json: Json = None,
@@ -147,7 +151,7 @@ def fit(
     from flexarm_env.cli.answers import hand_out
     from flexarm_env.terminal import identification, plain_data, tables
 
-    result = identification.fit(model, runs, seed)
+    result = identification.fit(model, runs, seed, rate)
     hand_out("fit", arm, runs, seed, json, plain_data.of_fit(result), tables.fit(result))
     if save is not None:
         result.arm.save(save)

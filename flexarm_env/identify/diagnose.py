@@ -31,6 +31,7 @@ def diagnose(
     jobs: int = 2,
     settings: Settings = SETTINGS,
     criteria: CriteriaFactory = ThresholdCriteria,
+    rate: float | None = None,
 ) -> Diagnosis:
     """Diagnose an arm against recordings.
 
@@ -42,6 +43,7 @@ def diagnose(
         jobs: processes.
         settings: numbers of the method.
         criteria: by which effects are accepted.
+        rate: samples per second [Hz] that are kept; 0 keeps all. By default, as many as the arm needs.
 
     Returns:
         The verdict, the missing effects, and the corrected arm.
@@ -58,7 +60,7 @@ def diagnose(
     """
     began = time.perf_counter()
     constants, searching, outlook = Progress.to(progress).split(1, 18, 1)
-    nominal, dataset = prepare(arm, recordings, settings)
+    nominal, dataset = prepare(arm, recordings, settings, rate)
     notes, too_poor = preflight(dataset)
     calibrator = Calibrator(nominal, dataset, Workers(jobs))
     if too_poor:

@@ -29,6 +29,7 @@ class Fit:
         free_run: the same, replayed once from the start.
         seconds: time taken.
         settings: numbers of the method.
+        notes: a sentence each for a person, on the recordings.
     """
 
     arm: Arm
@@ -37,6 +38,7 @@ class Fit:
     free_run: dict[str, float]
     seconds: float
     settings: Settings = SETTINGS
+    notes: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,7 @@ class Addition:
         free_run: the same, replayed once from the start.
         seconds: time taken.
         settings: numbers of the method.
+        notes: a sentence each for a person, on the recordings.
     """
 
     arm: Arm
@@ -60,6 +63,7 @@ class Addition:
     free_run: dict[str, float]
     seconds: float
     settings: Settings = SETTINGS
+    notes: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
