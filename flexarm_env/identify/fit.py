@@ -31,6 +31,7 @@ def fit(
     seed: int = 0,
     jobs: int = 2,
     settings: Settings = SETTINGS,
+    rate: float | None = None,
 ) -> Fit:
     """Calibrate the constants of an arm.
 
@@ -41,6 +42,7 @@ def fit(
         seed: recorded with the result.
         jobs: threads.
         settings: numbers of the method.
+        rate: samples per second [Hz] that are kept; 0 keeps all. By default, as many as the arm needs.
 
     Raises:
         InputError: for recordings that do not fit the arm, and for an arm that leaves nothing to fit.
@@ -54,7 +56,7 @@ def fit(
         True
     """
     began, say = time.perf_counter(), Progress.to(progress)
-    nominal, dataset = prepare(arm, recordings, settings)
+    nominal, dataset = prepare(arm, recordings, settings, rate)
     if not free_parameters(nominal, nominal, dataset):
         raise InputError(
             f"arm '{arm.name}' leaves nothing to fit: every constant is fixed, known exactly or 0; "
@@ -76,6 +78,7 @@ def fit(
         seconds=time.perf_counter() - began,
         settings=settings,
         closed_loop=closed_loop_errors({"nominal": before, "refitted": after}),
+        notes=list(dataset.notes),
     )
 
 
@@ -87,6 +90,7 @@ def add(
     seed: int = 0,
     jobs: int = 2,
     settings: Settings = SETTINGS,
+    rate: float | None = None,
 ) -> Addition:
     """Add one effect to an arm and calibrate everything.
 
@@ -98,6 +102,7 @@ def add(
         seed: recorded with the result.
         jobs: threads.
         settings: numbers of the method.
+        rate: samples per second [Hz] that are kept; 0 keeps all. By default, as many as the arm needs.
 
     Raises:
         InputError: for an unknown effect, one that the arm has already or cannot have, or recordings that do not fit.
@@ -115,7 +120,7 @@ def add(
         raise InputError(f"arm '{arm.name}' has effect '{effect}' already; `flexarm fit` refits it")
     arm.with_effect(effect)
     constants, adding = say.split(2, 3)
-    nominal, dataset = prepare(arm.without_effect(effect), recordings, settings)
+    nominal, dataset = prepare(arm.without_effect(effect), recordings, settings, rate)
     constants.at(0.0, "refitting the constants")
     workers = Workers(jobs)
     with workers.threads():
@@ -136,6 +141,7 @@ def add(
         seconds=time.perf_counter() - began,
         settings=settings,
         closed_loop=closed_loop_errors(dict(zip(names, scores, strict=True))),
+        notes=list(dataset.notes),
     )
 
 

@@ -31,6 +31,7 @@ class Fit:
         closed_loop: the same in closed loop, where the recordings were made in a known one; else empty.
         seconds: time taken.
         settings: numbers of the method.
+        notes: a sentence each for a person, on the recordings.
     """
 
     arm: Arm
@@ -40,6 +41,7 @@ class Fit:
     seconds: float
     settings: Settings = SETTINGS
     closed_loop: dict[str, float] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,7 @@ class Addition:
         closed_loop: the same in closed loop, where the recordings were made in a known one; else empty.
         seconds: time taken.
         settings: numbers of the method.
+        notes: a sentence each for a person, on the recordings.
     """
 
     arm: Arm
@@ -65,6 +68,7 @@ class Addition:
     seconds: float
     settings: Settings = SETTINGS
     closed_loop: dict[str, float] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True)

@@ -53,7 +53,7 @@ class Recording(Shown):
         controller: the law under which it was made, if its column map states one.
         source: the path it was read from; "" if from none.
         sha256: of that file's content; "" if from none.
-        notes: one line each on how the file was read, where a person might expect otherwise.
+        notes: one line each on how the recording was read or made, where a person might expect otherwise.
         gaps: for each step over three median steps, the index of the sample before it and its length [s].
     """
 

@@ -31,6 +31,7 @@ def of_fit(result: Fit) -> dict[str, Any]:
         "free_run": result.free_run,
         "closed_loop": result.closed_loop,
         "constants": {words.constant_name(e): e.as_json() for e in result.estimates},
+        "notes": result.notes,
         "settings": result.settings.as_json(),
         "seconds": round(result.seconds, 1),
     }
@@ -48,6 +49,7 @@ def of_addition(result: Addition) -> dict[str, Any]:
         "free_run": result.free_run,
         "closed_loop": result.closed_loop,
         "constants": {words.constant_name(e): e.as_json() for e in others},
+        "notes": result.notes,
         "settings": result.settings.as_json(),
         "seconds": round(result.seconds, 1),
     }

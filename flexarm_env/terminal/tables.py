@@ -207,6 +207,7 @@ def addition(result: Addition) -> list[RenderableType]:
             _closed(result.closed_loop, [result.effect]),
         ),
         *estimates("Values", result.estimates),
+        *_notes(result.notes),
     ]
 
 
@@ -216,4 +217,5 @@ def fit(result: Fit) -> list[RenderableType]:
         Text(f"Refitted, the held-out error goes {words.arrows(result.error)} × the noise.", style="bold"),
         steps(words.steps_of(result.error), words.steps_of(result.free_run), _closed(result.closed_loop)),
         *estimates("Constants", result.estimates),
+        *_notes(result.notes),
     ]
