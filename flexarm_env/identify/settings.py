@@ -644,7 +644,9 @@ class Inspecting:
     moves: float = tuned(20.0, "A signal moves if its range exceeds this multiple of its noise.")
     beyond_limit: float = tuned(1.01, "Commands above this multiple of the limit are beyond it.")
     fewest_changes: int = tuned(20, "Changes from which held readings are told.")
-    most_changing: float = tuned(0.6, "A held signal changes in fewer than this share of the rows.", "repeats of 2 change in half")
+    most_changing: float = tuned(
+        0.6, "A held signal changes in fewer than this share of the rows.", "repeats of 2 change in half"
+    )
     more_than_a_step: float = tuned(1.5, "A change above this multiple of the step is no flicker of the last digit.")
     large_changes: float = tuned(0.2, "Share of such changes in a held signal.")
     padding: int = tuned(4, "Length of the spectrum over that of the recording.")

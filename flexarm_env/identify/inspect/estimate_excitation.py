@@ -34,7 +34,8 @@ from flexarm_env.identify.replay.observer import innovation_sigma
 from flexarm_env.identify.replay.scales import torque_scale
 from flexarm_env.identify.select.effect_size import Rise, sizeable, smallest_detectable
 from flexarm_env.identify.select.signatures import Baseline, baseline_of
-from flexarm_env.identify.settings import FAILED_ERROR, SETTINGS, Settings
+from flexarm_env.identify.settings import FAILED_ERROR, LEAST_NORM, SETTINGS, Settings
+from flexarm_env.parameters import INPUTS, Parameter
 from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
@@ -71,7 +72,7 @@ def estimate_excitation(
     for number, name in enumerate(names):
         effects.at(number / len(names), name)
         found.append(_effect(base, name, rise_of))
-    return Excitation(tuple(_constants(base)), tuple(found))
+    return Excitation(tuple(_constants(base)), tuple(found), _common_scale(base))
 
 
 def _baseline(arm: Arm, dataset: Dataset) -> Baseline:
@@ -120,15 +121,29 @@ def _with_common_scale(base: Baseline, slopes: Floats) -> Floats:
 
     Most motion does not show it, and differences of one value at a time are not exact enough to show that nothing changes.
     """
+    along, change = _along_common_scale(base)
+    return slopes + np.outer(change - slopes @ along, along / max(float(along @ along), LEAST_NORM))
+
+
+def _common_scale(base: Baseline) -> str:
+    """Judge whether the innovations give the common scale better than the priors together."""
+    along, change = _along_common_scale(base)
+    if not along.any():
+        return ""
+    of_priors = float(np.sum((along / base.objective.parameters.priors) ** 2))
+    shown = base.objective.dataset.settings.excitation.shown
+    return SHOWN if of_priors <= shown**2 * (of_priors + float(change @ change)) else NOT_SHOWN
+
+
+def _along_common_scale(base: Baseline) -> tuple[Floats, Floats]:
+    """Compute the change of x (x,) and of the residual (rows,) per change of the common scale's logarithm."""
     objective, parameters = base.objective, base.objective.parameters
     powers = force_powers(base.arm, parameters)
     if not powers.any():
-        return slopes
+        return np.zeros(len(base.x)), np.zeros(len(base.residual))
     step = objective.dataset.settings.refining.scale_step
     above, below = (rescale(parameters, base.x, powers, shift) for shift in (step, -step))
-    along = (above - below) / (2.0 * step)
-    missed = (objective.residual(above) - objective.residual(below)) / (2.0 * step) - slopes @ along
-    return slopes + np.outer(missed, along / (along @ along))
+    return (above - below) / (2 * step), (objective.residual(above) - objective.residual(below)) / (2 * step)
 
 
 def _rise_against(arm: Arm, dataset: Dataset) -> Rise:
@@ -151,10 +166,17 @@ def _effect(base: Baseline, name: str, rise_of: Rise) -> EffectExcitation:
     key = found.key if found else next(key for key, p in known.items() if p.null is not None)
     parameter = known[key]
     typical = parameter.typical * parameter.scaled_by(dataset.scales)
-    if found is None:
-        return EffectExcitation(name, key, None, typical, parameter.unit, NOT_EXCITED)
-    sizes = typical / found.value if parameter.null == math.inf else found.value / typical
-    if sizes > dataset.settings.excitation.most_sizes:
-        return EffectExcitation(name, key, None, typical, parameter.unit, NOT_EXCITED)
-    state = DETECTABLE if sizes <= 1 else TOO_SMALL
-    return EffectExcitation(name, key, found.value, typical, parameter.unit, state)
+    unit = _unit(parameter, base.arm)
+    falls = parameter.null == math.inf
+    sizes = math.inf if found is None else typical / found.value if falls else found.value / typical
+    if found is None or sizes > dataset.settings.excitation.most_sizes:
+        return EffectExcitation(name, key, None, typical, unit, math.inf, falls, NOT_EXCITED)
+    return EffectExcitation(name, key, found.value, typical, unit, sizes, falls, DETECTABLE if sizes <= 1 else TOO_SMALL)
+
+
+def _unit(parameter: Parameter, arm: Arm) -> str:
+    """Name the unit of a parameter; the catalogue leaves that of a command open."""
+    command = INPUTS[arm.input]
+    if not parameter.of_command:
+        return parameter.unit
+    return command + parameter.unit.removeprefix("1") if parameter.unit.startswith("1/") else parameter.unit or command

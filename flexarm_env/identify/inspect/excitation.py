@@ -50,6 +50,8 @@ class EffectExcitation:
         limit: smallest value that would be accepted, or largest where a small one is strong; None where none would be.
         typical: usual value in recordings of this size.
         unit: of both.
+        sizes: the limit in typical sizes, the larger the stronger; infinite where there is none.
+        falls: whether a smaller value is a stronger effect, as of a stiffness.
         state: "detectable", "too small to see" or "not excited".
     """
 
@@ -58,6 +60,8 @@ class EffectExcitation:
     limit: float | None
     typical: float
     unit: str
+    sizes: float
+    falls: bool
     state: str
 
     def as_json(self) -> dict[str, Any]:
@@ -65,6 +69,7 @@ class EffectExcitation:
         return {
             "parameter": self.parameter,
             "limit": self.limit,
+            "limit_is": "largest" if self.falls else "smallest",
             "typical": self.typical,
             "unit": self.unit,
             "state": self.state,
@@ -78,14 +83,18 @@ class Excitation:
     Attributes:
         constants: those that a fit would move.
         effects: those that the arm lacks.
+        common_scale: whether the scale that torques, inertias and stiffnesses have in common is "shown"; "" where the arm file
+            fixes it.
     """
 
     constants: tuple[ConstantExcitation, ...]
     effects: tuple[EffectExcitation, ...]
+    common_scale: str
 
     def as_json(self) -> dict[str, Any]:
         """Convert to plain data."""
         return {
             "constants": {one.path: one.as_json() for one in self.constants},
             "effects": {one.effect: one.as_json() for one in self.effects},
+            "common_scale": self.common_scale,
         }

@@ -130,16 +130,19 @@ def _by_innovations(size: EffectSize, wanted: float) -> tuple[EffectSize, float]
     Returns:
         The size, and the share of its change that constants cannot take over; 1 where innovations do not give the size.
     """
-    first, before, last, share = size, size, math.inf, 1.0
+    first, before, last, share, still = size, size, math.inf, 1.0, 0.0
     for _ in range(size.numbers.steps):
         change, left = size.change()
         if size.multiple < before.multiple and left > size.numbers.stays * last:
             return first, 1.0
-        share = left / change if change > size.numbers.least_change else share
+        if change > size.numbers.least_change:
+            share = left / change
+        else:
+            still = max(still, size.multiple)
         before, last, size = size, left, size.stepped(wanted, left)
         if size.factor_from(before) < size.numbers.close:
             break
-    return replace(size, low=0.0, high=math.inf), share
+    return replace(size, low=still, high=math.inf), share
 
 
 def _by_windows(size: EffectSize, wanted: float, share: float, rise_of: Rise) -> EffectSize | None:
