@@ -21,13 +21,14 @@ def inspection_page(found: Overview, provenance: Mapping[str, Any]) -> str:
         provenance: "command_line", "version" and "commit", which reproduce the page.
     """
     faults, recordings = found.inspection.faults, found.recordings
+    signals = inspection_words.signals(found.arm, recordings, found.inspection)
     parts = [
         paragraph(inspection_words.sentence(found), "verdict"),
         section("Faults", faults_table(faults)) if faults else "",
         section("Recordings", table(inspection_words.EXTENTS, inspection_words.extents(recordings))),
         section(
             "Signals",
-            table(inspection_words.SIGNALS, inspection_words.signals(found.arm, found.recordings, found.inspection), words=2),
+            table(inspection_words.SIGNALS, signals, words=2),
             *_recordings(found),
         ),
         _constants(found),

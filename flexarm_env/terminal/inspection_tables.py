@@ -15,6 +15,7 @@ def inspection(found: Overview) -> list[RenderableType]:
     """Make the tables of an overview: faults, recordings, signals, constants, effects."""
     lines = [Text(f"- {fault.line}") for fault in found.inspection.faults]
     excited = found.excitation
+    signals = inspection_words.signals(found.arm, found.recordings, found.inspection)
     constants = table(
         "Constants: 90 % interval before and after a fit", inspection_words.CONSTANTS, inspection_words.constants(excited)
     )
@@ -24,7 +25,7 @@ def inspection(found: Overview) -> list[RenderableType]:
         *([Text("\n").join(lines)] if lines else []),
         _words(table("Recordings", inspection_words.EXTENTS, inspection_words.extents(found.recordings)), 4),
         _words(
-            table("Signals", inspection_words.SIGNALS, inspection_words.signals(found.arm, found.recordings, found.inspection)),
+            table("Signals", inspection_words.SIGNALS, signals),
             1,
             4,
         ),
