@@ -23,6 +23,7 @@ IDENTIFY_LAYERS = (
     {"inspect"},
     {"calibrate"},
     {"select"},
+    {"inspect"},
     {"explain"},
     {"results", "origin"},
     {"fit", "conclude"},

@@ -36,6 +36,33 @@ def _all(
 
 
 @app.command()
+def inspect(
+    recordings: Recordings,
+    arm: ArmName = "thesis",
+    columns: Columns = None,
+    effects: Effects = None,
+    report: Report = None,
+    json: Json = None,
+) -> None:
+    """Look at recordings first: signals, faults of sensors and units, and what they can show. Exit code 1 for a fault."""
+    given = arguments.Given(recordings, arm, columns, effects)
+    model, runs = given.load(json, report)
+    from flexarm_env.cli.answers import hand_out
+    from flexarm_env.terminal import identification
+    from flexarm_env.terminal.inspection_tables import inspection
+    from flexarm_env.terminal.provenance import provenance
+
+    found = identification.inspect(model, runs)
+    hand_out("inspect", arm, runs, None, json, found.as_json(), inspection(found))
+    if report is not None:
+        from flexarm_env.terminal.inspection_report import write_inspection
+
+        write_inspection(report, found, given.command_line("inspect") | provenance("inspect", arm, runs, None))
+    if found.inspection.faults:
+        raise typer.Exit(1)
+
+
+@app.command()
 def compare(
     recordings: Recordings,
     arm: ArmName = "thesis",

@@ -633,7 +633,11 @@ class DetectionLimits:
         "Steps by the innovations.",
         "simulated effects: a third of the limit stays hidden, three times as much shows; no sweep recorded",
     )
-    window_steps: int = tuned(2, "Steps by windows where only they show the effect.")
+    window_steps: int = tuned(
+        6,
+        "Most steps by windows, of which a small one is the last.",
+        "raised from 2 for limits of the command in runs of EMPS and `thesis-fem`, whose error does not grow with a square",
+    )
     in_windows: float = tuned(
         25.0,
         "Rise of the error in windows over that of the innovations, in which feedback hides an effect.",
@@ -654,6 +658,22 @@ class DetectionLimits:
         3,
         "Starts that are tried: of a periodic effect, from its slowest to its fastest.",
         "lowered from 4, in the change that halved the time of the demo's diagnosis",
+    )
+
+
+@dataclass(frozen=True)
+class ExcitationLimits:
+    """Which constants and effects recordings are said to show, before any fit."""
+
+    shown: float = tuned(
+        0.5,
+        "A constant is shown where recordings narrow its prior to this share.",
+        "chosen for the public definition: they then weigh three times as much as the prior",
+    )
+    most_sizes: float = tuned(
+        10.0,
+        "An effect that would not show at this multiple of its typical size is not excited.",
+        "chosen for the public definition",
     )
 
 
@@ -794,6 +814,7 @@ class Settings:
     proposing: Proposing = Proposing()
     selecting: Selecting = Selecting()
     detection: DetectionLimits = DetectionLimits()
+    excitation: ExcitationLimits = ExcitationLimits()
     explaining: Explaining = Explaining()
     inspecting: Inspecting = Inspecting()
     motion: MotionFaults = MotionFaults()

@@ -14,6 +14,7 @@ from flexarm_env.identify.results import Diagnosis
 from flexarm_env.pictures import bars, effect_figures, overlays, residuals, words
 from flexarm_env.pictures.document import bullets, document, figure, folded, panels, paragraph, section, table
 from flexarm_env.pictures.highlight import replay_of, worst_signals
+from flexarm_env.pictures.provenance_section import reproduce
 from flexarm_env.recordings.recording import Recording
 
 OVER_NOISE = "Held-out rms error over the noise; 1 (dotted) is perfect, hatched boxes are the part removed by a step."
@@ -236,14 +237,7 @@ def _recordings(found: Findings) -> str:
 
 
 def _redo(found: Findings) -> str:
-    made = found.provenance
-    files = [[r.name, r.sha256 or words.NOTHING] for r in found.recordings]
-    facts = [f"FlexArm {made['version']}" if "version" in made else "", f"commit {made['commit']}" if made.get("commit") else ""]
-    facts += [f"seed {made['seed']}" if made.get("seed") is not None else ""]
-    command = f"<pre tabindex=0>{escape(str(made['command_line']))}</pre>" if made.get("command_line") else ""
-    text = paragraph(", ".join(fact for fact in facts if fact))
-    sums = table(["recording", "SHA-256 of its file"], files, words=2, code=(1,))
-    return section("How to reproduce it", command, text, _settings(found.diagnosis), sums)
+    return reproduce(found.provenance, found.recordings, _settings(found.diagnosis))
 
 
 def _settings(diagnosis: Diagnosis | None) -> str:

@@ -14,7 +14,16 @@ from flexarm_env.terminal.progress import progress
 
 if TYPE_CHECKING:
     from flexarm_env.identify.explain.comparison import Comparison
+    from flexarm_env.identify.inspect.overview import Overview
     from flexarm_env.identify.results import Addition, Diagnosis, Fit
+
+
+def inspect(arm: Arm, recordings: Sequence[Recording]) -> Overview:
+    """Look at recordings before anything is fitted."""
+    from flexarm_env.identify.inspect.overview import overview
+
+    with progress("inspecting") as bar:
+        return overview(arm, list(recordings), bar)
 
 
 def compare(arm: Arm, recordings: Sequence[Recording], rate: float | None = None) -> Comparison:

@@ -32,7 +32,9 @@ def rail(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
         both = len(levels) == 2 and math.isclose(*np.abs(levels), rel_tol=numbers.same_jump)
         ends_text = f"±{abs(value):.5g}" if both else " and ".join(f"{level:.5g}" for level in levels)
         unit = UNITS[signal]
-        text = f"stands at its extreme of {ends_text} {unit} in {percent(float(at_level.mean()))} of the rows"
+        text = (
+            f"stands at its extreme of {ends_text} {unit} in {percent(float(at_level.mean()))} of the rows: it is cut off there"
+        )
         low, high = _range(one, levels)
         hint = f'{signal} = {{ range = ["{_within(low)} {unit}", "{_within(high)} {unit}"] }}'
         found.append(fault(recording, signal, "rail", abs(value) if both else value, text, hint, one.rows[at_level]))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -79,6 +79,9 @@ class ErrorMeasure(Protocol):
     def brief(self, arm: Arm, dataset: Dataset) -> float:
         """Measure the held-out error in windows, cheaply, for arms that are nearly the same."""
 
+    def brief_readings(self, arm: Arm, dataset: Dataset) -> list[Floats]:
+        """Compute the held-out readings (rows, signals) of each run that the brief error judges, over their deviation."""
+
 
 @dataclass(frozen=True)
 class WindowErrors:
@@ -101,15 +104,23 @@ class WindowErrors:
 
     def brief(self, arm: Arm, dataset: Dataset) -> float:
         """Measure the held-out error in windows, from states that two corrected replays estimate."""
+        total = 0.0
+        for run, windows in zip(dataset.runs, self._brief_windows(arm, dataset), strict=True):
+            total += _squares(run.errors(windows, dataset.noise)[~run.train])
+        return float(np.sqrt(total / dataset.readings(held_out=True)))
+
+    def brief_readings(self, arm: Arm, dataset: Dataset) -> list[Floats]:
+        """Compute the held-out readings (rows, signals) of each run in windows, over the noise."""
+        windows = self._brief_windows(arm, dataset)
+        return [one[~run.train] / dataset.noise for run, one in zip(dataset.runs, windows, strict=True)]
+
+    def _brief_windows(self, arm: Arm, dataset: Dataset) -> Iterator[Floats]:
+        """Replay the held-out part of each run in windows; rows before it are left empty."""
         plants = dataset.plants(arm)
         levels = dataset.settings.process_noise.windows_brief
         observers = {payload: window_observers(arm, plant, dataset, levels)[1:] for payload, plant in plants.items()}
-        total = 0.0
         for run in dataset.runs:
-            rows = ~run.train
-            windows = window_replay(plants[run.payload], run, dataset, observers[run.payload], int(np.argmax(rows)))
-            total += _squares(run.errors(windows, dataset.noise)[rows])
-        return float(np.sqrt(total / dataset.readings(held_out=True)))
+            yield window_replay(plants[run.payload], run, dataset, observers[run.payload], int(np.argmax(~run.train)))
 
 
 @dataclass(frozen=True)
@@ -137,6 +148,14 @@ class InnovationErrors:
     def brief(self, arm: Arm, dataset: Dataset) -> float:
         """Measure the held-out innovations."""
         return self.score(arm, dataset, held_out=True).windows
+
+    def brief_readings(self, arm: Arm, dataset: Dataset) -> list[Floats]:
+        """Compute the predictions (rows, signals) of each run's held-out part, over the deviation of the innovations."""
+        plants, own = dataset.plants(arm), arm.constants["drive"]["torque_noise"]
+        gains = {payload: observer_gains(arm, plant, dataset, own) for payload, plant in plants.items()}
+        sigmas = {payload: innovation_sigma(plant, dataset, own) for payload, plant in plants.items()}
+        predicted = [(run, replay(plants[run.payload], run, dataset, gains[run.payload])) for run in dataset.runs]
+        return [one[~run.train] / sigmas[run.payload] for run, one in predicted]
 
 
 def error_measure(arm: Arm) -> ErrorMeasure:
