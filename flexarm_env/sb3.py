@@ -11,7 +11,7 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
-from flexarm_env.env.infos import Infos
+from flexarm_env.env.infos import Infos, Step
 from flexarm_env.env.layout import SAMPLE_COUNT
 from flexarm_env.errors import InputError
 from flexarm_env.vector_env import FlexArmVectorEnv
@@ -116,7 +116,7 @@ class FlexArmVecEnv(VecEnv):
         rewards, terminated, truncated = envs.move(self.actions)
         done, last = envs.over, envs.batch.observations
         self.returns += rewards
-        infos = Infos(GOING_ON, envs.batch.outcome.copy(), envs.batch.info_rows, envs.batch.info_of)
+        infos = Infos(Step(GOING_ON, envs.batch.outcome.copy(), envs.batch.info_rows, envs.batch.info_of))
         ended = np.flatnonzero(done).tolist()
         elapsed = round(time.perf_counter() - self.began, 6)
         for i in ended:

@@ -1,59 +1,67 @@
-"""Infos of many arms, each a dictionary that is made when it is read: to make a thousand takes longer than to move the arms."""
+"""Infos of many arms, each a dictionary that is filled when it is read: to fill a thousand takes longer than to move the arms."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-#: Makes the numbers of an info of an arm's column of the outcome.
-Make = Callable[[list[float]], dict[str, Any]]
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Step:
+    """What the infos of a step have in common.
+
+    Attributes:
+        given: part of each info that stands in it from the start; not nothing, since some readers of dicts skip an empty one.
+        outcome: of the step (rows, arms), see layout; it must not change any more.
+        known: names of the numbers in an info.
+        make: makes the numbers of an arm's column of the outcome.
+    """
+
+    given: Mapping[str, Any]
+    outcome: NDArray[np.float64]
+    known: Mapping[str, int]
+    make: Callable[[list[float]], dict[str, Any]]
 
 
 class Info(dict[str, Any]):
     """Info of one arm, with the keys of a single environment's info: as a dict, but its numbers are written at first need.
 
-    Args:
-        given: what is in it from the start; not nothing, since some readers of dicts skip one that looks empty.
-        outcome: of a step (rows, arms), see layout.
+    Attributes:
+        step: that of the numbers; None once they are written.
         arm: number of the arm.
-        known: names of the numbers.
-        make: makes them.
     """
 
-    __slots__ = ("arm", "known", "make", "outcome")
+    __slots__ = ("arm", "step")
 
-    def __init__(
-        self, given: Mapping[str, Any], outcome: NDArray[np.float64], arm: int, known: Mapping[str, int], make: Make
-    ) -> None:
-        super().__init__(given)
-        self.outcome: NDArray[np.float64] | None = outcome
-        self.arm, self.known, self.make = arm, known, make
+    step: Step | None
+    arm: int
 
     def fill(self) -> None:
         """Write the numbers, unless that has been done; keep what has been written before."""
-        if self.outcome is not None:
-            column, self.outcome = self.outcome[:, self.arm].tolist(), None
-            later = dict(dict.items(self))
-            dict.update(self, self.make(column))
-            dict.update(self, later)
+        if self.step is not None:
+            step, self.step = self.step, None
+            before = dict(dict.items(self))
+            dict.update(self, step.make(step.outcome[:, self.arm].tolist()))
+            dict.update(self, before)
 
     def __missing__(self, key: str) -> Any:
-        if key in self.known and self.outcome is not None:
+        if self.step is not None and key in self.step.known:
             self.fill()
             return self[key]
         raise KeyError(key)
 
     def get(self, key: str, default: Any = None) -> Any:
         """Look up a value; only a number of the arm is a need to write all."""
-        if key in self.known:
+        if self.step is not None and key in self.step.known:
             self.fill()
         return dict.get(self, key, default)
 
     def __contains__(self, key: object) -> bool:
-        return dict.__contains__(self, key) or (key in self.known and self.outcome is not None)
+        return dict.__contains__(self, key) or (self.step is not None and key in self.step.known)
 
     def __reduce_ex__(self, protocol: Any) -> tuple[Any, ...]:
         return dict, (dict(self),)
@@ -78,21 +86,23 @@ for _name in (
 
 
 class Infos(Sequence[dict[str, Any]]):
-    """Infos of the arms in a step.
+    """Infos of the arms in a step."""
 
-    Args:
-        given: what is in each from the start.
-        outcome: of the step (rows, arms), see layout; it must not change any more.
-        known: names of the numbers in an info.
-        make: makes them.
-    """
-
-    def __init__(self, given: Mapping[str, Any], outcome: NDArray[np.float64], known: Mapping[str, int], make: Make) -> None:
-        self.given, self.outcome, self.known, self.make = given, outcome, known, make
-        self.made: dict[int, dict[str, Any]] = {}
+    def __init__(self, step: Step) -> None:
+        self.step = step
+        self.made: list[dict[str, Any] | None] = [None] * step.outcome.shape[1]
 
     def __len__(self) -> int:
-        return self.outcome.shape[1]
+        return len(self.made)
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        # Learners go through all infos in every step; one by one, as a Sequence does it, takes twice as long.
+        made, step = self.made, self.step
+        for arm, info in enumerate(made):
+            if info is None:
+                made[arm] = new = Info(step.given)
+                new.step, new.arm = step, arm
+        return iter(made)  # type: ignore[arg-type]
 
     @overload
     def __getitem__(self, arm: int) -> dict[str, Any]: ...
@@ -102,14 +112,15 @@ class Infos(Sequence[dict[str, Any]]):
 
     def __getitem__(self, arm: int | slice) -> dict[str, Any] | list[dict[str, Any]]:
         if isinstance(arm, slice):
-            return [self[i] for i in range(*arm.indices(len(self)))]
-        place = range(len(self))[arm]
-        if place not in self.made:
-            self.made[place] = Info(self.given, self.outcome, place, self.known, self.make)
-        return self.made[place]
+            return list(self)[arm]
+        info = self.made[arm]
+        if info is None:
+            self.made[arm] = info = new = Info(self.step.given)
+            new.step, new.arm = self.step, range(len(self))[arm]
+        return info
 
     def __setitem__(self, arm: int, info: dict[str, Any]) -> None:
-        self.made[range(len(self))[arm]] = info
+        self.made[arm] = info
 
     def __reduce__(self) -> tuple[Any, ...]:
         return list, (list(self),)

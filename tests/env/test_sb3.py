@@ -23,7 +23,7 @@ from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv, VecMonitor, VecNormalize
 
 from flexarm_env import InputError
-from flexarm_env.env.infos import Infos
+from flexarm_env.env.infos import Infos, Step
 from flexarm_env.registration import IDS
 from flexarm_env.sb3 import make_vec
 
@@ -98,7 +98,8 @@ def test_an_info_is_a_dict() -> None:
     outcome = np.array([[1.0, 2.0], [3.0, 4.0]])
 
     def infos() -> Infos:
-        found = Infos({"t": False}, outcome, {"a": 0, "b": 1}, lambda column: dict(zip("ab", column, strict=True)))
+        step = Step({"t": False}, outcome, {"a": 0, "b": 1}, lambda column: dict(zip("ab", column, strict=True)))
+        found = Infos(step)
         found[1] |= {"b": 9.0, "c": 5.0}
         return found
 
