@@ -232,6 +232,15 @@ def effects(
 
 
 @app.command()
+def envs(arm: ArmName = "thesis", json: Json = None) -> None:
+    """List the environments with an arm: task, observation, action, length of an episode."""
+    arguments.check(json)
+    from flexarm_env.cli import environments
+
+    environments.show(arm, json)
+
+
+@app.command()
 def demo(
     output: Annotated[Path, typer.Option(metavar="FOLDER", help="Where pictures, page and numbers go.")] = Path("results/demo"),
     seed: Seed = 0,
