@@ -12,6 +12,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.catalogue import CHECKS
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.mend import mended
+from flexarm_env.identify.inspect.motion import motion_faults
 from flexarm_env.identify.inspect.series import Series
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.recordings.columns import UNITS
@@ -98,6 +99,7 @@ def inspect_recordings(arm: Arm, recordings: Sequence[Recording], settings: Sett
             faults += found
             left = mended(left, found)
         sound.append(left)
+    faults += motion_faults(arm, sound, settings)
     facts = tuple(_facts(r, signal, settings) for r in recordings for signal in r.signals)
     return Inspection(tuple(faults), facts, tuple(sound), time.perf_counter() - began)
 
