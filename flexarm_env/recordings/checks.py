@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexarm_env.errors import InputError
+from flexarm_env.recordings.clock import step_back_error
 from flexarm_env.sensors import known_sensors
 
 Floats = NDArray[np.float64]
@@ -71,17 +72,12 @@ def check_time(time: Floats, lines: Sequence[int]) -> None:
         lines: the line of each sample in its file, for messages; empty where there is none.
 
     Raises:
-        InputError: at the first step of time that does not.
+        InputError: at the first step of time that does not; `RestartError` where the clock starts again.
     """
     check_values({"time": time}, lines)
     back = np.flatnonzero(np.diff(time) <= 0)
     if back.size:
-        i = int(back[0])
-        what = "repeats" if time[i + 1] == time[i] else "goes back"
-        raise InputError(
-            f"{_place(i + 1, lines)}, column 'time': {what}, {time[i + 1]:.9g} s after {time[i]:.9g} s"
-            " (from the first sample); sort the rows and remove repeated ones"
-        )
+        raise step_back_error(time, int(back[0]) + 1, _place(int(back[0]) + 1, lines))
     _check_steps(np.diff(time), lines)
 
 

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from flexarm_env.identify.explain.comparison import Replay, Row
 from flexarm_env.identify.replay.dataset import Dataset
-from flexarm_env.identify.replay.readings import errors_of
 
 Floats = NDArray[np.float64]
 
@@ -19,13 +18,13 @@ def band_rows(replays: Sequence[Replay], signal: str, noise: float, dataset: Dat
 
     Bands end at half the rate of the slowest recording of the signal.
     """
-    series = [_at_own_rate(one, signal, dataset.interval) for one in replays]
-    nyquist = 0.5 / max(interval for _, _, interval in series)
+    series = [at_own_rate(one, signal, dataset.interval) for one in replays]
+    nyquist = 0.5 / max(interval for _, interval in series)
     edges = [edge for edge in dataset.settings.explaining.bands if edge < nyquist] + [nyquist]
     power = np.zeros(len(edges) - 1)
     count = np.zeros(len(edges) - 1)
-    for error, readings, interval in series:
-        spectrum = np.abs(np.fft.rfft(error)) ** 2 / readings
+    for error, interval in series:
+        spectrum = np.abs(np.fft.rfft(error)) ** 2 / len(error)
         frequency = np.fft.rfftfreq(len(error), interval)
         place = np.clip(np.searchsorted(edges, frequency, side="right") - 1, 0, len(power) - 1)
         np.add.at(power, place, spectrum)
@@ -35,14 +34,16 @@ def band_rows(replays: Sequence[Replay], signal: str, noise: float, dataset: Dat
         yield Row("all", signal, f"{low:g}-{high:g} Hz", band_error, float("nan"), float("nan"), int(c))
 
 
-def _at_own_rate(one: Replay, signal: str, interval: float) -> tuple[Floats, int, float]:
-    """Give the errors (slots,) of a signal at the rate of its own readings, their count and its interval [s].
+def at_own_rate(one: Replay, signal: str, interval: float) -> tuple[Floats, float]:
+    """Select the errors (readings,) of a signal where it was measured, and give their usual interval [s].
 
-    A slot without a reading holds 0, which leaves the expected spectrum of white noise in proportion to the count.
+    Gaps are closed: a spectrum is that of the pieces, one after another.
+
+    Args:
+        one: a recording beside its replay.
+        signal: name.
+        interval: of the samples [s].
     """
     rows = np.flatnonzero(~np.isnan(one.measured[signal]))
-    step = int(np.median(np.diff(rows))) if len(rows) > 1 else 1
-    slots = (rows - rows[:1]) // step
-    errors = np.zeros(-(-len(one.time) // step))
-    errors[slots] = errors_of(one.measured[signal], one.windows[signal])[rows]
-    return errors, max(len(rows), 1), step * interval
+    step = float(np.median(np.diff(rows))) if len(rows) > 1 else 1.0
+    return (one.measured[signal] - one.windows[signal])[rows], step * interval

@@ -44,7 +44,8 @@ def play_loop(plant: Plant, loop: Loop, intervals: Floats) -> LoopReplay:
     readings = np.full((count, len(plant.signals)), np.nan)
     plant.kernel.measure(plant.constants, plant.layout, plant.state, readings.reshape(-1), 0)
     before = float(plant.state[at.COMMAND])
-    running = loop.start_law(readings[0], plant.interval, before)
+    hub_speed = float(plant.physical()[len(plant.model.names)])
+    running = loop.start_law(readings[0], hub_speed, plant.interval, before)
     # Where readings are ahead of commands, the law has the reference of a later row by then.
     ahead = max(-plant.delay_samples, 0)
     reference = np.pad(loop.reference, (0, ahead), mode="edge")[ahead:].tolist()
@@ -58,4 +59,4 @@ def play_loop(plant: Plant, loop: Loop, intervals: Floats) -> LoopReplay:
         if k + 1 == count or not np.isfinite(commands[k]):
             break
         readings[k + 1] = plant.play(pair, intervals[k : k + 2], NO_GAINS, NOT_MEASURED)[1]
-    return LoopReplay(readings, np.pad(commands, (ahead, 0), mode="edge")[:count])
+    return LoopReplay(readings, np.pad(commands, (ahead, 0), constant_values=before)[:count])

@@ -24,7 +24,6 @@ class Loop:
         law: with numbers as gains.
         columns: of its signals among the measured ones.
         reference: (samples,) [rad].
-        speed: of the arm's angle before the first sample [rad/s].
         law_error: ‖u − law‖ / ‖u‖ of the recorded command u, where the law is fed with the recorded signals.
         lag: by which u follows the law [s].
         late_error: the same error of the law, late by that lag.
@@ -33,7 +32,6 @@ class Loop:
     law: ControlLaw
     columns: tuple[int, ...]
     reference: Floats
-    speed: float
     law_error: float = 0.0
     lag: float = 0.0
     late_error: float = 0.0
@@ -42,9 +40,16 @@ class Loop:
         """Cut the reference down to its first samples."""
         return replace(self, reference=self.reference[:count])
 
-    def start_law(self, readings: Floats, interval: float, command: float) -> RunningLaw:
-        """Start the law at the first readings (signals,), sampled every interval [s], after a command [A or V]."""
-        slopes = [self.speed if signal == FOLLOWS else 0.0 for signal in self.law.signals]
+    def start_law(self, readings: Floats, speed: float, interval: float, command: float) -> RunningLaw:
+        """Start the law at the first readings (signals,).
+
+        Args:
+            readings: SI units.
+            speed: of the arm's angle before them [rad/s].
+            interval: sampling time [s].
+            command: before the first one [A or V].
+        """
+        slopes = [speed if signal == FOLLOWS else 0.0 for signal in self.law.signals]
         return self.law.start(interval, [float(readings[column]) for column in self.columns], slopes, command)
 
 
@@ -71,28 +76,29 @@ def find_loop(
     if lacking:
         return None, f"not replayed in closed loop: the control law needs {', '.join(lacking)}, and not every recording has it"
     law = replace(law, limit=law.limit or arm.constants["drive"]["limit"])
-    loop = Loop(law, tuple(signals.index(signal) for signal in law.signals), recording.reference, speed)
+    loop = Loop(law, tuple(signals.index(signal) for signal in law.signals), recording.reference)
     interval = recording.sample_time
     measured = np.stack([recording.signals[signal] for signal in signals], axis=1)
-    commands = law_commands(loop, measured, interval, float(recording.command[0]))
+    commands = law_commands(loop, measured, speed, interval, float(recording.command[0]))
     error, lag, late = compare_commands(recording.command, commands, round(numbers.longest_lag / interval))
-    text = f"the control law, fed with the recorded signals, misses the recorded {recording.input_kind} by {100 * error:.3g} %"
-    if error > numbers.largest_law_error:
-        return None, f"{text}; it is not that of the recording, which is not replayed in closed loop"
     loop = replace(loop, law_error=error, lag=lag * interval, late_error=late)
-    return loop, text + _lag_note(loop, interval)
+    note = _law_note(loop, recording)
+    if late > numbers.largest_law_error:
+        return None, f"{note}; it is not that of the recording, which is not replayed in closed loop"
+    return loop, note
 
 
-def law_commands(loop: Loop, measured: Floats, interval: float, before: float) -> Floats:
+def law_commands(loop: Loop, measured: Floats, speed: float, interval: float, before: float) -> Floats:
     """Compute the commands (samples,) of a law that is fed with the recorded signals and reference.
 
     Args:
         loop: law and reference.
         measured: (samples, signals), SI units.
+        speed: of the arm's angle at the start [rad/s].
         interval: sampling time [s].
         before: command before the first one [A or V].
     """
-    running = loop.start_law(measured[0], interval, before)
+    running = loop.start_law(measured[0], speed, interval, before)
     rows = measured[:, loop.columns].tolist()
     return np.array([running.command(row, value) for row, value in zip(rows, loop.reference.tolist(), strict=True)])
 
@@ -125,9 +131,11 @@ def compare_commands(recorded: Floats, computed: Floats, longest: int) -> tuple[
     return float(np.linalg.norm(recorded - computed)) / norm, best - longest + shift, late
 
 
-def _lag_note(loop: Loop, interval: float) -> str:
-    """Describe the lag of the recorded command behind the law, unless it is below half a sample."""
-    if abs(loop.lag) < 0.5 * interval:
-        return ""
+def _law_note(loop: Loop, recording: Recording) -> str:
+    """Describe how well a law gives the recorded command, with the lag of that unless it is below half a sample."""
+    kind, error = recording.input_kind, 100 * loop.law_error
+    text = f"the control law, fed with the recorded signals, misses the recorded {kind} by {error:.3g} %"
+    if abs(loop.lag) < 0.5 * recording.sample_time:
+        return text
     side = "later" if loop.lag > 0.0 else "earlier"
-    return f", by {100 * loop.late_error:.3g} % where it comes {1000 * abs(loop.lag):.2g} ms {side}"
+    return f"{text}, by {100 * loop.late_error:.3g} % where it comes {1000 * abs(loop.lag):.2g} ms {side}"

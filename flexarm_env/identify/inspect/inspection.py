@@ -1,0 +1,108 @@
+"""Inspect recordings before any search: the faults of their signals, each with its size and the line that mends it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.inspect.catalogue import CHECKS
+from flexarm_env.identify.inspect.fault import Fault
+from flexarm_env.identify.inspect.mend import mended
+from flexarm_env.identify.inspect.series import Series
+from flexarm_env.identify.settings import SETTINGS, Settings
+from flexarm_env.recordings.columns import UNITS
+from flexarm_env.recordings.recording import Recording
+
+
+@dataclass(frozen=True)
+class SignalFacts:
+    """One signal of one recording, as it was read.
+
+    Attributes:
+        recording: its name.
+        signal: its name.
+        unit: SI.
+        low: smallest reading.
+        high: largest reading.
+        samples: how many readings there are.
+        step: smallest change between two readings in a row; 0 where none changes.
+        noise: standard deviation that the second differences show.
+    """
+
+    recording: str
+    signal: str
+    unit: str
+    low: float
+    high: float
+    samples: int
+    step: float
+    noise: float
+
+
+@dataclass(frozen=True)
+class Inspection:
+    """What an inspection of recordings has found.
+
+    Attributes:
+        faults: of sensors, units and files.
+        signals: facts on every signal of every recording.
+        mended: the recordings with the faults of their readings undone, or left out as NaN.
+        seconds: time taken.
+    """
+
+    faults: tuple[Fault, ...]
+    signals: tuple[SignalFacts, ...]
+    mended: tuple[Recording, ...]
+    seconds: float
+
+    @property
+    def notes(self) -> list[str]:
+        """A line for each fault, with its recording and the line that mends it."""
+        return [one.line for one in self.faults]
+
+
+def inspect_recordings(arm: Arm, recordings: Sequence[Recording], settings: Settings = SETTINGS) -> Inspection:
+    """Inspect recordings of an arm's machine.
+
+    Args:
+        arm: the model.
+        recordings: of the machine.
+        settings: numbers of the method.
+
+    Returns:
+        The faults found, and facts on the signals.
+
+    Example:
+        >>> import numpy as np
+        >>> from dataclasses import replace
+        >>> from flexarm_env import Arm, inspect_recordings, simulate
+        >>> arm = Arm.load("thesis")
+        >>> run = simulate(arm, "pulse", duration=3.0)
+        >>> inspect_recordings(arm, [run]).faults
+        ()
+        >>> cut = run.signals | {"strain_base": np.clip(run.signals["strain_base"], -1.5, 1.5)}
+        >>> [(fault.kind, fault.signal, fault.value) for fault in inspect_recordings(arm, [replace(run, signals=cut)]).faults]
+        [('rail', 'strain_base', 1.5)]
+    """
+    began = time.perf_counter()
+    faults: list[Fault] = []
+    sound = []
+    for recording in recordings:
+        left = recording
+        for check in CHECKS:
+            found = check(left, arm, settings.inspecting)
+            faults += found
+            left = mended(left, found)
+        sound.append(left)
+    facts = tuple(_facts(r, signal, settings) for r in recordings for signal in r.signals)
+    return Inspection(tuple(faults), facts, tuple(sound), time.perf_counter() - began)
+
+
+def _facts(recording: Recording, signal: str, settings: Settings) -> SignalFacts:
+    series = Series.of(recording, signal, settings.inspecting)
+    low, high = (float(f(series.values)) if len(series) else float("nan") for f in (np.min, np.max))
+    return SignalFacts(recording.name, signal, UNITS[signal], low, high, len(series), series.step, series.noise)
