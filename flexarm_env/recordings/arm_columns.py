@@ -7,8 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from flexarm_env.errors import InputError
-from flexarm_env.recordings.columns import ColumnMap, Source, native_sources
+from flexarm_env.parameters import INPUTS
+from flexarm_env.recordings.columns import ColumnMap, Source, check_names, native_sources
 from flexarm_env.recordings.formats.text import read_header
+from flexarm_env.sensors import known_sensors
 
 #: Bytes of a file in which its header must lie.
 _HEAD = 1 << 16
@@ -30,7 +32,10 @@ def layout_of(path: Path, columns: ColumnMap, require_signal: bool = True) -> tu
         The map, or None to follow the header; and a note where they differ, else "".
     """
     own, texts = _own_header(path)
-    if columns.joins or not own or ("time" not in own and not columns.refines):
+    if columns.joins:
+        alone = stands_alone(path, columns, require_signal)
+        return (None, "read by its own header; the arm's [columns] are of several files") if alone else (columns, "")
+    if not own or ("time" not in own and not columns.refines):
         return columns, ""
     if columns.refines:
         return _refinement(columns, own, require_signal)
@@ -44,6 +49,21 @@ def layout_of(path: Path, columns: ColumnMap, require_signal: bool = True) -> tu
     if by_number or not differing:
         return None, ""
     return (columns, "") if require_signal else (None, _note("its own header", "the arm's [columns] differ", differing))
+
+
+def stands_alone(path: Path, columns: ColumnMap, require_signal: bool = True) -> bool:
+    """Whether a file is a recording of FlexArm's own, and not one of the several files of an arm's map.
+
+    Args:
+        path: the file.
+        columns: the arm's map of several files.
+        require_signal: whether a recording must hold a signal.
+    """
+    own, texts = _own_header(path)
+    whole = "time" in own and set(INPUTS) & set(own) and (not require_signal or set(known_sensors()) & set(own))
+    command = columns.sources[check_names(tuple(columns.sources))]
+    mapped = {name: source for name, source in columns.sources.items() if source.file in ("", command.file)}
+    return bool(whole) and len(_found(replace(columns, sources=mapped), texts)) < len(mapped)
 
 
 def _refinement(columns: ColumnMap, own: dict[str, Source], require_signal: bool) -> tuple[ColumnMap, str]:

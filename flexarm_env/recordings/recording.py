@@ -156,7 +156,7 @@ class Recording(Shown):
         calibration: Mapping[str, float] | None = None,
         require_signal: bool = True,
     ) -> Recording:
-        r"""Read a recording from a CSV file, or by a column map from any text table or .mat file.
+        r"""Read a recording from a CSV file, or by a column map from any file of another logger.
 
         Args:
             path: the file. Its time is shifted to start at 0.
@@ -216,7 +216,7 @@ class Recording(Shown):
         calibration: Mapping[str, float] | None = None,
         require_signal: bool = True,
     ) -> list[Recording]:
-        """Read the recordings in files and folders; a folder stands for its CSV and .mat files, sorted by name.
+        """Read the recordings in files and folders; a folder stands for those in it, sorted by name.
 
         Where names would come twice, they have the folder's name before them. Arguments as `read`.
 

@@ -10,9 +10,10 @@ from flexarm_env.arm import Arm
 from flexarm_env.effects import Catalogue, catalogue
 from flexarm_env.effects.catalogue import load_effect
 from flexarm_env.errors import InputError
-from flexarm_env.recordings.arm_columns import layout_of
+from flexarm_env.recordings.arm_columns import layout_of, stands_alone
 from flexarm_env.recordings.column_maps import load_columns
 from flexarm_env.recordings.columns import CALIBRATED, ColumnMap
+from flexarm_env.recordings.files import files_of
 from flexarm_env.recordings.joined import recording_files
 from flexarm_env.recordings.recording import Recording, with_distinct_names
 
@@ -38,7 +39,7 @@ def read_recordings(arm: Arm, paths: Sequence[Path], columns: Path | None, requi
         recordings = Recording.read_all(paths, columns, calibration(arm), require_signal)
     else:
         layout = _layout(arm)
-        files = recording_files(paths, layout)
+        files = _files(paths, layout, require_signal)
         recordings = with_distinct_names([_read(arm, file, layout, require_signal) for file in files])
     for recording in recordings:
         _check_fits(arm, recording, require_signal)
@@ -51,6 +52,15 @@ def _layout(arm: Arm) -> ColumnMap:
         return load_columns(arm.columns or {})
     except InputError as error:
         raise InputError(f"arm '{arm.name}': {error}") from None
+
+
+def _files(paths: Sequence[Path], columns: ColumnMap, require_signal: bool) -> list[Path]:
+    """List the file of each recording; where the arm's are in several files, others may stand alone."""
+    if not columns.joins:
+        return recording_files(paths, columns)
+    alone = [path for path in paths if path.is_file() and stands_alone(path, columns, require_signal)]
+    others = [path for path in paths if path not in alone]
+    return [*(files_of(alone) if alone else []), *(recording_files(others, columns) if others or not alone else [])]
 
 
 def _read(arm: Arm, file: Path, columns: ColumnMap, require_signal: bool) -> Recording:

@@ -11,6 +11,7 @@ import scipy.io
 from cli_stand_ins import GOOD_ARM
 from hypothesis import given
 from hypothesis import strategies as st
+from recording_files import GOOD, save
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
@@ -124,7 +125,15 @@ def test_the_map_of_an_arm_may_name_files(runs: Path) -> None:
         'current = { file = "*_current.csv", column = "i", unit = "A" }\n'
         'arm_angle = { file = "*_angle.csv", column = "phi", unit = "rad" }\n'
     )
-    assert [found.name for found in read_recordings(Arm.load(arm_file), [runs], None)] == ["one", "two"]
+    arm = Arm.load(arm_file)
+    assert [found.name for found in read_recordings(arm, [runs], None)] == ["one", "two"]
+    own = save(runs.parent, GOOD, "simulated.csv")  # as `flexarm simulate` writes it
+    one, simulated = (found for found in read_recordings(arm, [own, runs / "one_angle.csv"], None)[::-1])
+    assert (one.name, simulated.name) == ("one", "simulated")
+    assert simulated.notes == ("read by its own header; the arm's [columns] are of several files",)
+    assert [found.name for found in read_recordings(arm, [own], None)] == ["simulated"]
+    with pytest.raises(InputError, match="is none of the files"):
+        read_recordings(arm, [save(runs.parent, "t,i,q\n0,1,2\n1,2,3\n", "other.csv")], None)
 
 
 def failure(*paths: Path, table: dict[str, Any] = MAP) -> str:

@@ -275,3 +275,29 @@ def test_conditions_and_a_controller_beside_maps_that_refine(tmp_path: Path) -> 
     recording = Recording.read(save(tmp_path, "i,q,K\n1,2,7\n1,3,7\n"), {**table, "conditions": conditions})
     assert recording.conditions == {"gain": 7.0}
     assert recording.time.tolist() == [0, 0.1]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        'motor_speed = { unit = "rps" }',
+        "motor_speed = { scale = 0.2 }",
+        "arm_angle = { sign = -1 }",
+        "motor_speed = { repeats = 2 }",
+        'arm_angle = { wrap = "6.2831853 rad" }',
+        'arm_angle = { range = ["-100 rad", "100 rad"] }',
+        "arm_angle = { ignore = [[0, 0.5]] }",
+        'time = { shift = "1 s" }',
+        'arm_angle = { shift = "1 s" }\nmotor_speed = { sign = -1, ignore = [[0, 1]] }',
+    ],
+)
+def test_each_correction_alone_mends_a_header(tmp_path: Path, line: str) -> None:
+    path = save(tmp_path, SPEEDS)
+    plain, mended = Recording.read(path), Recording.read(path, save(tmp_path, f"[columns]\n{line}\n", "mend.toml"))
+    assert list(mended.signals) == list(plain.signals)
+    assert np.array_equal(mended.command, plain.command)
+    changed = {name for name in plain.signals if not np.array_equal(mended.signals[name], plain.signals[name])}
+    assert changed <= (
+        {"arm_angle", "motor_speed"} if line.startswith("time") else {entry.split()[0] for entry in line.splitlines()}
+    )
+    assert changed or "wrap" in line or "range" in line
