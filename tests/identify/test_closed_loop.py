@@ -13,7 +13,7 @@ from flexarm_env.control.law import ControlLaw, Feedback
 from flexarm_env.experiments.rig import SpeedEstimate
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.error_measure import Score, score
-from flexarm_env.identify.replay.loop import compare_commands
+from flexarm_env.identify.replay.loop import Loop, compare_commands, law_commands
 from flexarm_env.identify.select.criteria import ThresholdCriteria
 from flexarm_env.identify.select.model import Model
 from flexarm_env.identify.settings import SETTINGS
@@ -147,6 +147,12 @@ def test_a_part_of_a_sample_is_found(lag):
     error, found, late = compare_commands(command(time - lag), command(time), 20)
     assert found == pytest.approx(lag, abs=0.02)
     assert late <= error + 1e-12
+
+
+def test_the_law_holds_a_reading_that_is_absent():
+    angle = np.array([[np.nan], [1.0], [np.nan], [np.nan], [4.0]])
+    loop = Loop(ControlLaw((Feedback("arm_angle", (2.0,)),)), (0,), np.zeros(5))
+    assert law_commands(loop, angle, 0.0, 0.01, 0.0).tolist() == [-2.0, -2.0, -2.0, -2.0, -8.0]
 
 
 def test_another_law_is_not_taken_for_that_of_the_recording():
