@@ -168,7 +168,7 @@ def test_another_law_is_not_taken_for_that_of_the_recording():
 def test_what_the_law_needs_and_the_recording_lacks_is_named():
     arm = thesis(ControlLaw((Feedback("arm_angle", ("K1",)), Feedback("motor_speed", (DERIVATIVE,)))))
     run = simulate(arm, "square", duration=2.0, rate=200.0)
-    assert "the control law needs K1," in compare(arm, [run]).notes[0]
+    assert "the control law needs K1, a line such as '# K1 = 1' each" in compare(arm, [run]).notes[0]
     assert compare(arm, [replace(run, conditions={"K1": PROPORTIONAL})]).closed_loop is not None
     silent = replace(run, signals={"arm_angle": run.signals["arm_angle"]}, conditions={"K1": PROPORTIONAL})
     assert "the control law needs motor_speed," in compare(arm, [silent]).notes[0]

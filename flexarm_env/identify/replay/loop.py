@@ -72,9 +72,15 @@ def find_loop(
     if stated is None or recording.reference is None:
         return None, ""
     law = stated.with_conditions(recording.conditions)
-    lacking = [*law.conditions, *(signal for signal in law.signals if signal not in signals)]
-    if lacking:
-        return None, f"not replayed in closed loop: the control law needs {', '.join(lacking)}, and not every recording has it"
+    if law.conditions:
+        names = " and ".join(law.conditions)
+        return (
+            None,
+            f"not replayed in closed loop: the control law needs {names}, a line such as '# {law.conditions[0]} = 1' each",
+        )
+    absent = [signal for signal in law.signals if signal not in signals]
+    if absent:
+        return None, f"not replayed in closed loop: the control law needs {' and '.join(absent)}, which not all recordings have"
     law = replace(law, limit=law.limit or arm.constants["drive"]["limit"])
     loop = Loop(law, tuple(signals.index(signal) for signal in law.signals), recording.reference)
     interval = recording.sample_time
