@@ -13,7 +13,7 @@ from flexarm_env.control.law import ControlLaw, Feedback
 from flexarm_env.experiments.rig import SpeedEstimate
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.error_measure import Score, score
-from flexarm_env.identify.replay.loop import compare_commands
+from flexarm_env.identify.replay.loop import Loop, compare_commands, law_commands
 from flexarm_env.identify.select.criteria import ThresholdCriteria
 from flexarm_env.identify.select.model import Model
 from flexarm_env.identify.settings import SETTINGS
@@ -149,6 +149,12 @@ def test_a_part_of_a_sample_is_found(lag):
     assert late <= error + 1e-12
 
 
+def test_the_law_holds_a_reading_that_is_absent():
+    angle = np.array([[np.nan], [1.0], [np.nan], [np.nan], [4.0]])
+    loop = Loop(ControlLaw((Feedback("arm_angle", (2.0,)),)), (0,), np.zeros(5))
+    assert law_commands(loop, angle, 0.0, 0.01, 0.0).tolist() == [-2.0, -2.0, -2.0, -2.0, -8.0]
+
+
 def test_another_law_is_not_taken_for_that_of_the_recording():
     run = simulate(thesis(PD), "square", duration=4.0, rate=200.0)
     wrong = thesis(ControlLaw((Feedback("arm_angle", (3.0 * PROPORTIONAL,)),)))
@@ -162,7 +168,7 @@ def test_another_law_is_not_taken_for_that_of_the_recording():
 def test_what_the_law_needs_and_the_recording_lacks_is_named():
     arm = thesis(ControlLaw((Feedback("arm_angle", ("K1",)), Feedback("motor_speed", (DERIVATIVE,)))))
     run = simulate(arm, "square", duration=2.0, rate=200.0)
-    assert "the control law needs K1," in compare(arm, [run]).notes[0]
+    assert "the control law needs K1, a line such as '# K1 = 1' each" in compare(arm, [run]).notes[0]
     assert compare(arm, [replace(run, conditions={"K1": PROPORTIONAL})]).closed_loop is not None
     silent = replace(run, signals={"arm_angle": run.signals["arm_angle"]}, conditions={"K1": PROPORTIONAL})
     assert "the control law needs motor_speed," in compare(arm, [silent]).notes[0]

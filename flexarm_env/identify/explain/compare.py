@@ -117,15 +117,22 @@ def _loop_rows(replays: Sequence[Replay], dataset: Dataset, noise: Mapping[str, 
     for one, run in zip(replays, dataset.runs, strict=True):
         for name, closed in one.closed.items():
             measured = one.measured.get(name, run.command)
-            rms, size = (float(np.linalg.norm(values)) for values in (measured - closed, measured))
-            error = rms / noise[name] / float(np.sqrt(len(closed))) if name in noise else float("nan")
-            relative = 100 * rms / size if size else float("nan")
-            yield LoopRow(one.name, name, error, fit_percent(measured, closed), relative)
+            there = ~np.isnan(measured)
+            measured, modelled = measured[there], closed[there]
+            rest, size = (float(np.linalg.norm(values)) for values in (measured - modelled, measured))
+            error = rest / noise[name] / float(np.sqrt(len(measured))) if name in noise else float("nan")
+            relative = 100 * rest / size if size else float("nan")
+            yield LoopRow(one.name, name, error, fit_percent(measured, modelled), relative)
 
 
 def _closed_loop_error(replays: Sequence[Replay], noise: Mapping[str, float]) -> float:
     """Measure the error over noise of all recordings in closed loop; those without a loop count in a free run."""
-    scaled = [(one.measured[s] - (one.closed or one.free)[s]) / sigma for one in replays for s, sigma in noise.items()]
+    scaled = []
+    for one in replays:
+        modelled = one.closed or one.free
+        for signal, sigma in noise.items():
+            there = ~np.isnan(one.measured[signal])
+            scaled.append((one.measured[signal][there] - modelled[signal][there]) / sigma)
     return float(np.sqrt(np.mean(np.concatenate(scaled) ** 2)))
 
 

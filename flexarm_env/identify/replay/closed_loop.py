@@ -45,7 +45,8 @@ def play_loop(plant: Plant, loop: Loop, intervals: Floats) -> LoopReplay:
     plant.kernel.measure(plant.constants, plant.layout, plant.state, readings.reshape(-1), 0)
     before = float(plant.state[at.COMMAND])
     hub_speed = float(plant.physical()[len(plant.model.names)])
-    running = loop.start_law(readings[0], hub_speed, plant.interval, before)
+    interval = float(np.median(intervals)) if len(intervals) else plant.interval
+    running = loop.start_law(readings[0], hub_speed, interval, before)
     # Where readings are ahead of commands, the law has the reference of a later row by then.
     ahead = max(-plant.delay_samples, 0)
     reference = np.pad(loop.reference, (0, ahead), mode="edge")[ahead:].tolist()

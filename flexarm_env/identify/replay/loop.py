@@ -72,9 +72,15 @@ def find_loop(
     if stated is None or recording.reference is None:
         return None, ""
     law = stated.with_conditions(recording.conditions)
-    lacking = [*law.conditions, *(signal for signal in law.signals if signal not in signals)]
-    if lacking:
-        return None, f"not replayed in closed loop: the control law needs {', '.join(lacking)}, and not every recording has it"
+    if law.conditions:
+        names = " and ".join(law.conditions)
+        return (
+            None,
+            f"not replayed in closed loop: the control law needs {names}, a line such as '# {law.conditions[0]} = 1' each",
+        )
+    absent = [signal for signal in law.signals if signal not in signals]
+    if absent:
+        return None, f"not replayed in closed loop: the control law needs {' and '.join(absent)}, which not all recordings have"
     law = replace(law, limit=law.limit or arm.constants["drive"]["limit"])
     loop = Loop(law, tuple(signals.index(signal) for signal in law.signals), recording.reference)
     interval = recording.sample_time
@@ -93,13 +99,16 @@ def law_commands(loop: Loop, measured: Floats, speed: float, interval: float, be
 
     Args:
         loop: law and reference.
-        measured: (samples, signals), SI units.
+        measured: (samples, signals), SI units; a reading that is absent is the last one before.
         speed: of the arm's angle at the start [rad/s].
         interval: sampling time [s].
         before: command before the first one [A or V].
     """
-    running = loop.start_law(measured[0], speed, interval, before)
-    rows = measured[:, loop.columns].tolist()
+    there = ~np.isnan(measured)
+    last = np.maximum.accumulate(np.where(there, np.arange(len(measured))[:, None], there.argmax(axis=0)))
+    held = np.take_along_axis(measured, last, axis=0)
+    running = loop.start_law(held[0], speed, interval, before)
+    rows = held[:, loop.columns].tolist()
     return np.array([running.command(row, value) for row, value in zip(rows, loop.reference.tolist(), strict=True)])
 
 
@@ -116,7 +125,7 @@ def compare_commands(recorded: Floats, computed: Floats, longest: int) -> tuple[
         samples and parts of them; and the error there.
     """
     norm = float(np.linalg.norm(recorded)) or 1.0
-    longest = min(longest, (len(recorded) - 1) // 2)
+    longest = min(longest, len(recorded) // 4)
     inner = recorded[longest : len(recorded) - longest]
     windows = np.lib.stride_tricks.sliding_window_view(computed, len(inner))
     squares = np.array([float(np.sum((inner - window) ** 2)) for window in windows[::-1]])
