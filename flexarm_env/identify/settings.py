@@ -781,6 +781,7 @@ class MotionFaults:
     least_factor: float = tuned(1.25, "Gains within this factor of 1 belong to the calibration.")
     command_factors: tuple[float, ...] = tuned((0.1, 0.3, 3.0, 10.0), "Factors of the command from which it is searched.")
     command_steps: int = tuned(8, "Steps in which a factor of the command is refined.")
+    signal_steps: int = tuned(3, "Steps in which a factor of an only signal is refined.")
     command_close: float = tuned(0.002, "Logarithm of a gain that ends the steps.")
     known_factor: float = tuned(0.02, "Logarithm of the ratio to a known number within which a factor is named by it.")
 

@@ -20,11 +20,13 @@ class Agreement:
         gain: the measured over the modelled.
         lag: time by which the measured is late [s].
         share: of the measured signal's variance that the multiple explains.
+        power: variance of the measured signal, in its unit squared.
     """
 
     gain: float
     lag: float
     share: float
+    power: float = 0.0
 
     def is_within(self, factor: float) -> bool:
         """Whether the gain is 1 within a factor."""
@@ -51,7 +53,7 @@ def agreement(measured: Floats, modelled: Floats, cell: float, numbers: MotionFa
     own, model, both = float((y * y).sum()), float((p * p).sum()), float((y * p).sum())
     if not own * model > 0.0:
         return NOTHING_IN_COMMON
-    return Agreement(both / model, 0.0, both / own * both / model)
+    return Agreement(both / model, 0.0, both / own * both / model, own / y.size)
 
 
 def agreement_late(measured: Floats, modelled: Floats, cell: float, numbers: MotionFaults) -> Agreement:

@@ -7,13 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexarm_env.identify.inspect.agreement import Agreement
 from flexarm_env.identify.inspect.evidence import HUB, Evidence
 from flexarm_env.identify.inspect.factor_words import factor_fault
 from flexarm_env.identify.inspect.fault import Fault
-from flexarm_env.identify.inspect.free_run import FreeRun, Table
+from flexarm_env.identify.inspect.free_run import FreeRun, Table, replayer
 
 #: Constants that a factor of the command, or of all signals, looks like.
 TORQUE, INERTIA = "drive.torque_constant", "hub.inertia"
+#: One that the factor of a signal of the beam looks like.
+STIFFNESS = "beam.bending_stiffness"
 
 
 def factors(evidence: Evidence) -> list[Fault]:
@@ -27,9 +30,19 @@ def _of_signals(evidence: Evidence) -> list[Fault]:
     if not evidence.model_holds:
         return []
     for signal, now in evidence.at_once.items():
-        if now.share > numbers.same_shape and not now.is_within(numbers.least_factor) and _hub_concurs(evidence, signal):
+        off = now.share > numbers.same_shape and now.gain > 0.0 and not now.is_within(numbers.least_factor)
+        if off and _hub_concurs(evidence, signal) and _is_beyond_calibration(evidence, signal, now):
             found.append(factor_fault(evidence, signal, now.gain))
     return found
+
+
+def _is_beyond_calibration(evidence: Evidence, signal: str, found: Agreement) -> bool:
+    """Whether a factor leaves hardly more than noise, or is beyond the spreads of the sensor's gain and the beam's stiffness."""
+    arm = evidence.arm
+    gain = arm.parameter(f"sensors.{signal}.gain").spread
+    beam = arm.parameter(STIFFNESS).spread if signal not in HUB else 0.0
+    far = abs(math.log(found.gain)) > evidence.numbers.spreads * math.hypot(gain, beam)
+    return far or evidence.run.leaves_noise(signal, found)
 
 
 def _hub_concurs(evidence: Evidence, signal: str) -> bool:
@@ -81,12 +94,30 @@ def _of_command(evidence: Evidence) -> list[Fault]:
     command, factor = evidence.recording.input_kind, _command_factor(evidence)
     mended = evidence.replayer.free_run(factor).at_once() if factor else {}
     if len(at_once) == 1:
-        ((signal, now),) = at_once.items()
-        if not (factor and mended[signal].share > now.share):
-            alone = {signal: replace(now, gain=1.0)}
-            return [factor_fault(evidence, signal, now.gain, command)] if _is_certain(evidence, now.gain, alone) else []
-        return [factor_fault(evidence, command, factor, signal)] if _is_certain(evidence, factor, mended) else []
+        return _of_signal_or_command(evidence, factor, mended)
     return [factor_fault(evidence, command, factor)] if factor and _is_certain(evidence, factor, mended) else []
+
+
+def _of_signal_or_command(evidence: Evidence, factor: float, mended: Table) -> list[Fault]:
+    """Find the factor of the only signal, or of the command if that explains more."""
+    command, (signal,) = evidence.recording.input_kind, evidence.signals
+    gain, alone = _refined(evidence, signal)
+    if factor and mended[signal].share > alone.share:
+        return [factor_fault(evidence, command, factor, signal)] if _is_certain(evidence, factor, mended) else []
+    return [factor_fault(evidence, signal, gain, command)] if _is_certain(evidence, gain, {signal: alone}) else []
+
+
+def _refined(evidence: Evidence, signal: str) -> tuple[float, Agreement]:
+    """Refine the factor of a signal: a start in motion, which is read from the signal, changes as it is mended."""
+    recording, now = evidence.recording, evidence.at_once[signal]
+    gain = now.gain
+    for _ in range(evidence.numbers.signal_steps):
+        if gain <= 0.0:
+            break
+        mended = replace(recording, signals={**recording.signals, signal: recording.signals[signal] / gain})
+        now = replayer(evidence.arm, mended, evidence.replayer.dataset.settings).free_run().agreement(signal, signal)
+        gain *= now.gain
+    return gain, now
 
 
 def _is_certain(evidence: Evidence, factor: float, mended: Table) -> bool:
@@ -101,7 +132,7 @@ def _is_certain(evidence: Evidence, factor: float, mended: Table) -> bool:
     size, least = abs(math.log(factor)), min(found.share for found in mended.values())
     torque, inertia = (arm.parameter(path).spread for path in (TORQUE, INERTIA))
     near = all(found.is_within(numbers.near) for found in mended.values())
-    if near and least > numbers.exact:
+    if near and all(evidence.run.leaves_noise(signal, found) for signal, found in mended.items()):
         of_torque = numbers.spreads * torque if arm.input == "current" else 0.0
         return size > max(math.log1p(of_torque), math.log(numbers.least_factor))
     if near and least > numbers.alike:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -30,6 +31,7 @@ class FreeRun:
         cell: length of a cell [s].
         measured: (cells, signals) means, SI units; NaN where a signal has no value for long.
         modelled: (cells, signals) means of the model's readings.
+        noise: (signals,) standard deviation of a cell's mean, as the arm states it.
         numbers: of the method.
     """
 
@@ -37,6 +39,7 @@ class FreeRun:
     cell: float
     measured: Floats
     modelled: Floats
+    noise: Floats
     numbers: MotionFaults
 
     def agreement(self, signal: str, model: str) -> Agreement:
@@ -64,6 +67,14 @@ class FreeRun:
         turned = np.cumsum(np.where(np.isfinite(speeds), speeds, 0.0)) - 0.5 * speeds
         return angles, turned * (self.cell / gear_ratio)
 
+    def leaves_noise(self, signal: str, found: Agreement) -> bool:
+        """Whether an agreement leaves hardly more of a signal than its noise."""
+        if not found.power:
+            return False
+        scale = max(abs(found.gain), 1.0)
+        noise = (scale * float(self.noise[self.signals.index(signal)])) ** 2 / found.power
+        return found.share + noise > self.numbers.exact
+
     def _pair(self, signal: str, model: str) -> tuple[Floats, Floats]:
         return self.measured[:, self.signals.index(signal)], self.modelled[:, self.signals.index(model)]
 
@@ -87,7 +98,8 @@ class Replayer:
         modelled = replay(self.plant, replace(run, command=run.command / command_factor), dataset)
         cell = max(dataset.interval, numbers.cell)
         measured, modelled = (cell_means(run.time, values, cell, numbers.longest_gap) for values in (run.measured, modelled))
-        return FreeRun(dataset.signals, cell, measured, modelled, numbers)
+        noise = dataset.noise * math.sqrt(dataset.interval / cell)
+        return FreeRun(dataset.signals, cell, measured, modelled, noise, numbers)
 
 
 def replayer(arm: Arm, recording: Recording, settings: Settings) -> Replayer:
