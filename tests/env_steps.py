@@ -40,3 +40,12 @@ def steps_of(env: Any, taken: np.ndarray) -> list[Any]:
 def steps_of_many(envs: Any, taken: np.ndarray) -> list[Any]:
     """Take steps with many arms; list all that comes."""
     return [envs.step(action) for action in taken]
+
+
+def steps_of_all(env: Any, envs: Any, alone: Any, taken: np.ndarray) -> list[Any]:
+    """Take steps with two single environments and many arms, of which all but the first may be None."""
+    return [
+        steps_of(env, taken[:, 0]),
+        steps_of_many(envs, taken) if envs is not None else [],
+        steps_of(alone, taken[:, 0]) if alone is not None else [],
+    ]

@@ -14,10 +14,11 @@ import gymnasium as gym
 import joblib
 import numpy as np
 import pytest
-from env_steps import TROUBLE, actions, same, steps_of, steps_of_many
+from env_steps import TROUBLE, actions, same, steps_of, steps_of_all, steps_of_many
 from gymnasium.vector import AsyncVectorEnv, AutoresetMode
 
-from flexarm_env import Arm
+from flexarm_env import Arm, catalogue
+from flexarm_env.effects.catalogue import load_effect
 from flexarm_env.env import FlexArmEnv
 from flexarm_env.registration import IDS
 from flexarm_env.tasks import COMMON_TERMS, RewardTerm, Task
@@ -109,8 +110,8 @@ import pickle, sys
 sys.path.insert(0, sys.argv[1])
 with open(sys.argv[2], "rb") as file:
     env, envs, alone, taken = pickle.load(file)
-from env_steps import steps_of, steps_of_many
-found = steps_of(env, taken[:, 0]), steps_of_many(envs, taken), steps_of(alone, taken[:, 0])
+from env_steps import steps_of_all
+found = steps_of_all(env, envs, alone, taken)
 with open(sys.argv[2], "wb") as file:
     pickle.dump(found, file)
 """
@@ -139,18 +140,21 @@ def test_a_copy_goes_on_in_a_new_process(tmp_path: Path, monkeypatch) -> None:
     env = gym.make("FlexArm/Slew-Random-v0", arm=LATE, disturb=TROUBLE, duration=0.5)
     envs = gym.make_vec("FlexArm/Damp-v0", 3, vectorization_mode="vector_entry_point", disturb=TROUBLE, max_episode_steps=40)
     alone = FlexArmEnv(Task("mine", 3.0, target=0.5, terms=(*COMMON_TERMS, term_of_a_file.TERM)), "thesis-fem")
-    taken = actions(120, 3)
-    for each, first in ((env, taken[:, 0]), (alone, taken[:, 0]), (envs, taken)):
+    check_in_a_new_process(tmp_path, env, alone, envs, actions(120, 3))
+
+
+def check_in_a_new_process(folder: Path, env: gym.Env, alone: gym.Env | None, envs: gym.vector.VectorEnv | None, taken) -> None:
+    """Send environments in the middle of an episode to a new process, and compare its steps with those here."""
+    for each in filter(None, (env, alone, envs)):
         each.reset(seed=2)
-        for action in first[:30]:
-            each.step(action)
-    path = tmp_path / "sent"
+        for action in taken[:30]:
+            each.step(action if each is envs else action[0])
+    path = folder / "sent"
     path.write_bytes(cloudpickle.dumps((env, envs, alone, taken)))
     program = [sys.executable, "-c", PROGRAM, str(Path(__file__).parent.parent), str(path)]
     run = subprocess.run(program, capture_output=True, text=True, cwd=Path(__file__).parents[2])
     assert run.returncode == 0, run.stderr
-    here = steps_of(env, taken[:, 0]), steps_of_many(envs, taken), steps_of(alone, taken[:, 0])
-    assert same(pickle.loads(path.read_bytes()), here)
+    assert same(pickle.loads(path.read_bytes()), steps_of_all(env, envs, alone, taken))
 
 
 def test_a_term_keeps_its_source() -> None:
@@ -169,3 +173,29 @@ def test_processes_of_gymnasium_step_what_they_are_sent() -> None:
     there.close()
     here = [env.reset(seed=8)[0], *(env.step(action[0])[0] for action in taken)]
     assert same([one[0] for one in seen], here)
+
+
+OWN_EFFECT = '''
+from flexarm_env.effects import Effect
+from flexarm_env.parameters import Parameter
+
+class Magnet(Effect):
+    """A magnet beside the bench."""
+
+    name = "magnet"
+    equation = "tau = -size angle"
+    parameters = {"size": Parameter("N*m/rad", 0.0, 10.0, 0.5, null=0.0, meaning="torque per angle")}
+    looks_like = "the hub is pulled back"
+
+    @staticmethod
+    def torque(angle, size):
+        return -size * angle
+'''
+
+
+@pytest.mark.slow(minutes=2)
+def test_an_arm_with_an_effect_of_ones_own_goes_on_in_a_new_process(tmp_path: Path) -> None:
+    (tmp_path / "magnet.py").write_text(OWN_EFFECT)
+    known = catalogue().extended(load_effect(f"{tmp_path / 'magnet.py'}:Magnet"))
+    env = gym.make("FlexArm/Damp-v0", arm=Arm.load("thesis", known).with_effect("magnet", size=2.0))
+    check_in_a_new_process(tmp_path, env, None, None, actions(60, 1))
