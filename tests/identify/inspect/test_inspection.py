@@ -201,3 +201,24 @@ def test_the_shipped_recordings_are_sound_and_quickly_inspected():
 def test_measured_recordings_are_sound(measurements, arm, pattern):
     model = Arm.load(arm)
     assert inspect_recordings(model, read_recordings(model, sorted(measurements.glob(pattern)), None)).faults == ()
+
+
+def test_a_gap_in_a_motion_is_not_two_runs(thesis, square):
+    """A logger that lost half a second while the arm moved: every signal has changed meanwhile."""
+    start = int(np.abs(square.signals["motor_speed"]).argmax())
+    kept = np.r_[np.arange(start), np.arange(start + 250, len(square))]
+    signals = {name: values[kept] for name, values in square.signals.items()}
+    run = Recording.from_arrays("gap", square.time[kept], "current", square.command[kept], signals)
+    assert inspect_recordings(thesis, [run]).faults == ()
+    absent = {name: np.where(np.isin(np.arange(len(square)), kept), values, np.nan) for name, values in square.signals.items()}
+    assert inspect_recordings(thesis, [replace(square, signals=absent)]).faults == ()
+
+
+@pytest.mark.parametrize(("signal", "length"), [("arm_angle", 60), ("strain_base", 25)])
+def test_a_noisy_reading_that_stands_still_is_lost(thesis, square, signal, length):
+    values = square.signals[signal].copy()
+    values[1000 : 1000 + length] = values[1000]
+    fault = only(thesis, changed(square, signal, values))
+    assert (fault.kind, fault.signal, fault.value) == ("dropout", signal, values[1000])
+    assert set(range(1000, 1000 + length)) <= set(fault.rows)
+    assert "stands still" in fault.message
