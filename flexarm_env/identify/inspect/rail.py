@@ -66,7 +66,7 @@ def _stands_at(end: int, signal: str, series: dict[str, Series], numbers: Inspec
     if count < numbers.fewest_at_rail:
         return False
     follow = count - int(at_end.sum())
-    repeated = _evidence(follow, count, _usual_repeats(one, values < values.max(), numbers)) > numbers.evidence
+    repeated = _evidence(follow, count, one.most_repeats(values < values.max(), numbers)) > numbers.evidence
     if one.flicker > numbers.flickers:
         return repeated or _piles_up(values, one.step, count, numbers)
     episodes = starts[at_end & (lengths >= numbers.least_run)]
@@ -77,17 +77,6 @@ def _piles_up(values: Floats, step: float, count: int, numbers: Inspecting) -> b
     """Whether a flickering signal has more readings at its end than a step before it, where noise has fewer."""
     before = int(np.sum(values > values.max() - (1 + 1 / 2) * step)) - count
     return (count - before) > numbers.piled_up * math.sqrt(count + before)
-
-
-def _usual_repeats(series: Series, elsewhere: np.ndarray, numbers: Inspecting) -> float:
-    """Compute the largest share of repeated readings in a stretch of the signal, away from its extreme."""
-    repeated = ((series.changes == 0.0) & elsewhere[1:])[: len(series) // numbers.stretches * numbers.stretches]
-    away = elsewhere[1 : 1 + len(repeated)]
-    pieces = len(repeated) // numbers.stretches * numbers.stretches
-    sums = [part[:pieces].reshape(numbers.stretches, -1).sum(axis=1) for part in (repeated, away)]
-    enough = sums[1] >= numbers.fewest_at_rail
-    shares = sums[0][enough] / sums[1][enough]
-    return float(np.clip(shares.max() if shares.size else 1.0, numbers.least_repeats, 1.0))
 
 
 def _evidence(follow: int, count: int, usual: float) -> float:
