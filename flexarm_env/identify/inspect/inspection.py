@@ -93,15 +93,22 @@ def inspect_recordings(arm: Arm, recordings: Sequence[Recording], settings: Sett
     faults: list[Fault] = []
     sound = []
     for recording in recordings:
-        left = recording
-        for check in CHECKS:
-            found = check(left, arm, settings.inspecting)
-            faults += found
-            left = mended(left, found)
+        found, left = reading_faults(arm, recording, settings)
+        faults += found
         sound.append(left)
     faults += motion_faults(arm, sound, settings)
     facts = tuple(_facts(r, signal, settings) for r in recordings for signal in r.signals)
     return Inspection(tuple(faults), facts, tuple(sound), time.perf_counter() - began)
+
+
+def reading_faults(arm: Arm, recording: Recording, settings: Settings = SETTINGS) -> tuple[list[Fault], Recording]:
+    """Find the faults of a recording that its readings show without a model, and mend them in memory."""
+    faults: list[Fault] = []
+    for check in CHECKS:
+        found = check(recording, arm, settings.inspecting)
+        faults += found
+        recording = mended(recording, found)
+    return faults, recording
 
 
 def _facts(recording: Recording, signal: str, settings: Settings) -> SignalFacts:
