@@ -21,7 +21,7 @@ USUAL_UNITS = {
 QUADRATURE = 4
 
 
-def factor_fault(evidence: Evidence, signal: str, value: float, rival: str = "") -> Fault:
+def factor_fault(evidence: Evidence, signal: str, value: float, rival: str = "", roughly: bool = False) -> Fault:
     """Describe the factor of a signal or of the command, over the model's.
 
     Args:
@@ -29,9 +29,12 @@ def factor_fault(evidence: Evidence, signal: str, value: float, rival: str = "")
         signal: at fault, or the command.
         value: the factor.
         rival: that could be at fault in its place.
+        roughly: whether the model is wrong elsewhere, too, so that the value is no more than an estimate.
     """
     recording = evidence.recording
-    unit, number = _known(evidence, signal, value)
+    size = f"about {value:.2g}" if roughly else f"{value:.3g}"
+    unit, number = ("", "") if roughly else _known(evidence, signal, value)
+    size += f" = {number}" if number else ""
     also = f" (or {rival} is {1.0 / value:.3g} of it: with one signal alone the two look alike)" if rival else ""
     entry = f'unit = "{unit}"' if unit else f"scale = {1.0 / value:.4g}"
     gain = ""
@@ -44,7 +47,7 @@ def factor_fault(evidence: Evidence, signal: str, value: float, rival: str = "")
         kind="factor",
         value=value,
         unit="",
-        message=f"{signal} is {value:.3g}{f' = {number}' if number else ''} of the model's{also}",
+        message=f"{signal} is {size} of the model's{also}",
         hint=f"{signal} = {{ {entry} }}{gain}",
         other=rival,
     )
@@ -58,9 +61,10 @@ def _known(evidence: Evidence, signal: str, value: float) -> tuple[str, str]:
         if abs(math.log(value * unit_factor(other, unit))) < close:
             return other, words
     ratio = evidence.arm.constants["drive"]["gear_ratio"]
-    sides = {"the gear ratio": ratio, "1/the gear ratio": 1.0 / ratio} if signal in ("arm_angle", "motor_speed") else {}
-    counts = {"4, as counts of an encoder": QUADRATURE, "1/4, as counts of an encoder": 1.0 / QUADRATURE}
-    for words, number in (sides | counts if signal == "arm_angle" else sides).items():
+    sides = {"the gear ratio": ratio, "1/(gear ratio)": 1.0 / ratio}
+    counts = {"4 (edges of an encoder for its lines)": QUADRATURE, "1/4 (lines of an encoder for its edges)": 1.0 / QUADRATURE}
+    numbers = {"arm_angle": sides | counts, "motor_speed": sides}
+    for words, number in numbers.get(signal, {}).items():
         if abs(math.log(value / number)) < close and abs(math.log(number)) > close:
             return "", words
     return "", ""
