@@ -111,8 +111,14 @@ def diagnose(
         show(json)
         return
     given = arguments.Given(arguments.required(recordings, "diagnose"), arm, columns, effects)
-    model, runs = given.load(json, report, save, next_run)
-    from flexarm_env.cli.answers import hand_out
+    from flexarm_env.cli.answers import answer_restart, hand_out
+    from flexarm_env.recordings.clock import RestartError
+
+    try:
+        model, runs = given.load(json, report, save, next_run)
+    except RestartError as error:
+        answer_restart(error, arguments.load_arm(arm, effects), arm, seed, json, report)
+        raise typer.Exit(1) from None
     from flexarm_env.files import write_whole
     from flexarm_env.terminal import identification, tables
     from flexarm_env.terminal.provenance import provenance
@@ -123,12 +129,14 @@ def diagnose(
     elif next_run is not None:
         typer.echo(f"No next run is proposed, so {next_run} is not written.", err=True)
     hand_out("diagnose", arm, runs, seed, json, result.as_json(), tables.diagnosis(result))
-    if save is not None:
+    if save is not None and result.recordings:
+        typer.echo(f"The arm was not judged by these recordings, so {save} is not written.", err=True)
+    elif save is not None:
         result.arm.save(save)
     if report is not None:
         made = given.command_line("diagnose", seed) | provenance("diagnose", arm, runs, seed)
         identification.write_page(report, runs, identification.compare(result.nominal, runs), result, made)
-    if result.verdict in ("unknown", "insufficient_data"):
+    if result.verdict in ("unknown", "insufficient_data", "recordings"):
         raise typer.Exit(1)
 
 
@@ -150,6 +158,7 @@ def add(
     from flexarm_env.effects.catalogue import load_effect
     from flexarm_env.terminal import identification, plain_data, tables
 
+    arguments.show_faults(identification.faults(model, runs))
     result = identification.add(load_effect(effect).name if own else effect, model, runs, seed)
     hand_out("add", arm, runs, seed, json, plain_data.of_addition(result), tables.addition(result))
     if save is not None:
@@ -174,6 +183,7 @@ def fit(
     from flexarm_env.cli.answers import hand_out
     from flexarm_env.terminal import identification, plain_data, tables
 
+    arguments.show_faults(identification.faults(model, runs))
     result = identification.fit(model, runs, seed)
     hand_out("fit", arm, runs, seed, json, plain_data.of_fit(result), tables.fit(result))
     if save is not None:

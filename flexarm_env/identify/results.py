@@ -13,6 +13,7 @@ from flexarm_env.display import Shown
 from flexarm_env.experiments.next_run import NextRun
 from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.explain.detection_limits import DetectionLimit
+from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.settings import SETTINGS, Settings
 
 Floats = NDArray[np.float64]
@@ -84,7 +85,7 @@ class Diagnosis(Shown):
     """The diagnosis of an arm, and the corrected arm.
 
     Attributes:
-        verdict: "nothing_missing", "parameters", "effects", "unknown" or "insufficient_data".
+        verdict: "nothing_missing", "parameters", "effects", "unknown", "recordings" or "insufficient_data".
         effects: those accepted, in the order of their weight.
         equivalent: for each accepted effect, all that these data cannot tell from it, itself first.
         ranking: candidates by gain.
@@ -98,6 +99,7 @@ class Diagnosis(Shown):
         notes: a sentence each for a person: findings on the recordings, and the remaining error.
         smallest: the size of each effect that is not accepted up to which it would go undetected in these recordings.
         next_run: the input to record next, where these leave something open.
+        recordings: faults of the recordings. Where there are any nothing was searched, and errors are NaN.
         trace: the search, step by step, as plain data.
         settings: numbers of the method.
         seconds: time taken.
@@ -119,6 +121,7 @@ class Diagnosis(Shown):
     seed: int = 0
     smallest: dict[str, DetectionLimit] = field(default_factory=dict)
     next_run: NextRun | None = None
+    recordings: list[Fault] = field(default_factory=list)
     trace: list[dict[str, Any]] = field(default_factory=list)
     settings: Settings = SETTINGS
 
@@ -127,6 +130,7 @@ class Diagnosis(Shown):
         return {
             "verdict": self.verdict,
             "effects": self.effects,
+            "recordings": [fault.as_json() for fault in self.recordings],
             "equivalent": self.equivalent,
             "ranking": [
                 {

@@ -48,12 +48,25 @@ def page(found: Findings) -> str:
     before, diagnosis = found.before, found.diagnosis
     sentence = words.comparison(before) if diagnosis is None else words.verdict(diagnosis)
     parts = [paragraph(sentence, "verdict"), _glance(found), bullets((diagnosis or before).notes)]
-    if diagnosis is not None:
+    if diagnosis is not None and diagnosis.recordings:
+        parts.append(_faults(diagnosis))
+    elif diagnosis is not None:
         parts += [_curves(found), _ranking(diagnosis), _falling(diagnosis), _constants(diagnosis)]
         parts += [_smallest(diagnosis), _next_run(diagnosis)]
     parts += [section("Where it fails", _errors(before, found.after)), _residuals(found), _recordings(found), _redo(found)]
     title = f"Arm {before.arm.name} against {words.counted(len(before.replays), 'recording')}"
     return document(title, parts)
+
+
+def page_of_faults(diagnosis: Diagnosis) -> str:
+    """Build the HTML of a diagnosis whose recordings cannot be read as such, with nothing to replay."""
+    title = f"Arm {diagnosis.nominal.name} against recordings at fault"
+    return document(title, [paragraph(words.verdict(diagnosis), "verdict"), _faults(diagnosis)])
+
+
+def _faults(diagnosis: Diagnosis) -> str:
+    rows = words.fault_rows(diagnosis.recordings)
+    return section("Faults of the recordings", table(words.FAULT_COLUMNS, rows, words=len(words.FAULT_COLUMNS), code=(5,)))
 
 
 def _glance(found: Findings) -> str:
@@ -64,7 +77,7 @@ def _glance(found: Findings) -> str:
         rivals = any(len(names) > 1 for names in diagnosis.equivalent)
         caption = "✓ accepted; ≈ indistinguishable from it in these data." if rivals else "✓ accepted."
         shown.append(figure(bars.ranking(diagnosis, 6), "glance-which", "Missing effect", caption))
-    if diagnosis is not None:
+    if diagnosis is not None and not diagnosis.recordings:
         steps = words.steps_of(diagnosis.error, diagnosis.effects)
         shown.append(figure(bars.waterfall(steps), "glance-fall", "How the error fell", "Held out, over the noise."))
     else:

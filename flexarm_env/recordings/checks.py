@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexarm_env.errors import InputError
+from flexarm_env.recordings.clock import step_back_error
 
 Floats = NDArray[np.float64]
 
@@ -42,7 +43,7 @@ def check_samples(arrays: Mapping[str, Floats], lines: Sequence[int]) -> None:
         lines: the line of each sample in its file, for messages; empty where there is none.
 
     Raises:
-        InputError: at the first number or step of time that is not.
+        InputError: at the first number or step of time that is not; `RestartError` where the clock starts again.
     """
 
     def place(sample: int) -> str:
@@ -59,12 +60,7 @@ def check_samples(arrays: Mapping[str, Floats], lines: Sequence[int]) -> None:
     time = arrays["time"]
     back = np.flatnonzero(np.diff(time) <= 0)
     if back.size:
-        i = int(back[0])
-        what = "repeats" if time[i + 1] == time[i] else "goes back"
-        raise InputError(
-            f"{place(i + 1)}, column 'time': {what}, {time[i + 1]:.9g} s after {time[i]:.9g} s"
-            " (from the first sample); sort the rows and remove repeated ones"
-        )
+        raise step_back_error(time, int(back[0]) + 1, place(int(back[0]) + 1))
     _check_steps(np.diff(time), place)
 
 

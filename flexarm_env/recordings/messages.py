@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from flexarm_env.errors import InputError
+from flexarm_env.recordings.clock import RestartError
 
 _LONGEST = 40
 
@@ -16,4 +17,10 @@ def quoted(text: str) -> str:
 
 def file_error(path: Path, what: object) -> InputError:
     """Make the error of a file. Characters of path or content that would break the line are escaped."""
-    return InputError("".join(c if c.isprintable() else repr(c)[1:-1] for c in f"{path}: {what}"))
+    if isinstance(what, RestartError):
+        return what.of(_escaped(str(path)))
+    return InputError(_escaped(f"{path}: {what}"))
+
+
+def _escaped(text: str) -> str:
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)

@@ -17,6 +17,7 @@ from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import write_whole
 from flexarm_env.parameters import INPUTS
 from flexarm_env.recordings.checks import as_vector, check_conditions, check_samples
+from flexarm_env.recordings.clock import RestartError
 from flexarm_env.recordings.column_maps import load_columns
 from flexarm_env.recordings.columns import UNITS, ColumnMap, check_calibration, check_names
 from flexarm_env.recordings.conditions import CONDITIONS
@@ -134,6 +135,8 @@ class Recording(Shown):
             arrays = {column: as_vector(column, values) for column, values in columns.items()}
             recording = _recording(name, arrays, dict(conditions or {}), ())
             _check_signal(recording, require_signal)
+        except RestartError as error:
+            raise error.of(name) from None
         except InputError as error:
             raise InputError(f"{name}: {error}") from None
         return recording

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,9 +27,15 @@ def inspect(arm: Arm, recordings: Sequence[Recording]) -> Overview:
 
 
 def compare(arm: Arm, recordings: Sequence[Recording]) -> Comparison:
-    """Compare an arm with its recordings."""
+    """Compare an arm with its recordings; faults of these are among the notes."""
     with progress("comparing") as bar:
-        return flexarm_env.compare(arm, list(recordings), progress=bar)
+        found = flexarm_env.compare(arm, list(recordings), progress=bar)
+        return replace(found, notes=[*faults(arm, recordings), *found.notes])
+
+
+def faults(arm: Arm, recordings: Sequence[Recording]) -> list[str]:
+    """List the faults of recordings, a line each."""
+    return flexarm_env.inspect_recordings(arm, list(recordings)).notes
 
 
 def fit(arm: Arm, recordings: Sequence[Recording], seed: int) -> Fit:

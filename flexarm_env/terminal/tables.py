@@ -12,6 +12,7 @@ from rich.text import Text
 
 from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.explain.comparison import Comparison, Row
+from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.results import Addition, Diagnosis, Fit
 from flexarm_env.pictures import words
 from flexarm_env.pictures.highlight import error_by_second
@@ -151,7 +152,9 @@ def estimates(title: str, found: Sequence[Estimate]) -> list[RenderableType]:
 
 
 def diagnosis(result: Diagnosis) -> list[RenderableType]:
-    """Show the verdict, the ranking, the error and the constants of a diagnosis."""
+    """Show the verdict, the ranking, the error and the constants of a diagnosis, or the faults of its recordings."""
+    if result.recordings:
+        return [Text(words.verdict(result), style="bold"), faults(result.recordings), *_notes(result.notes)]
     free = words.steps_of(result.free_run, result.effects)
     constants = [e for e in result.constants.values() if not e.path.startswith("effects.") or e.nominal]
     return [
@@ -161,6 +164,11 @@ def diagnosis(result: Diagnosis) -> list[RenderableType]:
         *estimates("Constants", constants),
         *_notes([*result.notes, *([f"to settle what is open, {result.next_run.why}"] if result.next_run else [])]),
     ]
+
+
+def faults(found: Sequence[Fault]) -> Table:
+    """Make the table of faults of recordings."""
+    return text_table("Faults of the recordings", words.FAULT_COLUMNS, words.fault_rows(found))
 
 
 def _ranking(result: Diagnosis) -> list[RenderableType]:

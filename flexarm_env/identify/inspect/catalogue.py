@@ -20,4 +20,4 @@ from flexarm_env.recordings.recording import Recording
 #: A check takes a recording, the arm and the numbers of the inspection.
 Check = Callable[[Recording, Arm, Inspecting], list[Fault]]
 
-CHECKS: tuple[Check, ...] = (constant, limit, glued, wrap, held, dropout, spike, rail)
+CHECKS: tuple[Check, ...] = (constant, limit, wrap, held, dropout, spike, glued, rail)

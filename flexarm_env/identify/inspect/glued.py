@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import numpy as np
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.report import fault, quantity
 from flexarm_env.identify.inspect.series import Integers, Series
+from flexarm_env.identify.inspect.wild import usual_change
 from flexarm_env.identify.inspect.wrap import wraps
 from flexarm_env.identify.settings import Inspecting
 from flexarm_env.recordings.columns import UNITS
@@ -15,12 +18,11 @@ from flexarm_env.recordings.recording import Recording
 
 
 def glued(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
-    """Find samples at which the signals jump and go on as the recording began, or at which several jump at once."""
+    """Find samples at which a signal jumps and all stand as the recording began, or at which several jump at once."""
     series = {signal: Series.of(recording, signal, numbers) for signal in recording.signals}
-    jumps = {signal: _jumps(one, UNITS[signal] == "rad", numbers) for signal, one in series.items()}
-    candidates, counts = np.unique(np.concatenate([rows for rows in jumps.values()] or [[]]), return_counts=True)
+    jumps = Counter(int(row) for signal, one in series.items() for row in _jumps(one, UNITS[signal] == "rad", numbers))
     found = []
-    for row, count in zip(candidates.astype(int), counts, strict=True):
+    for row, count in sorted(jumps.items()):
         if count > 1 or _begins_again(row, series, numbers):
             time = float(recording.time[row])
             text = (
@@ -49,12 +51,10 @@ def _jumps(series: Series, is_angle: bool, numbers: Inspecting) -> Integers:
 
 
 def _begins_again(row: int, series: dict[str, Series], numbers: Inspecting) -> bool:
-    """Whether all signals go on after a sample as they began."""
-    length = numbers.first_readings
+    """Whether the readings of a sample are those that the recording began with."""
     for one in series.values():
         place = int(np.searchsorted(one.rows, row))
-        count = min(length, len(one) - place)
-        apart = np.abs(one.values[place : place + count] - one.values[:count])
-        if not count or float(apart.mean()) > numbers.as_begun * max(one.noise, one.step):
+        slack = max(numbers.as_begun * max(one.noise, one.step), 2 * usual_change(one, numbers))
+        if place == len(one) or abs(float(one.values[place] - one.values[0])) > slack:
             return False
     return True

@@ -13,9 +13,11 @@ from flexarm_env.recordings.recording import Recording
 
 
 def mended(recording: Recording, faults: Iterable[Fault]) -> Recording:
-    """Undo wraps, leave out readings that are none (NaN), and drop signals that never move."""
-    signals = dict(recording.signals)
+    """Undo wraps, leave out readings that are none (NaN), drop signals that never move, and keep the first of glued runs."""
+    signals, end = dict(recording.signals), None
     for one in faults:
+        if one.kind == "glued" and end is None:
+            end = one.value
         if one.signal not in signals:
             continue
         if one.kind == "constant":
@@ -27,7 +29,8 @@ def mended(recording: Recording, faults: Iterable[Fault]) -> Recording:
         elif one.kind == "held":
             values = signals[one.signal]
             signals[one.signal] = without(values, np.flatnonzero(np.r_[False, np.diff(values) == 0.0]))
-    return replace(recording, signals=signals)
+    left = replace(recording, signals=signals)
+    return left if end is None else left.part(0.0, end)
 
 
 def unwrapped(values: Floats, rows: np.ndarray, modulus: float) -> Floats:

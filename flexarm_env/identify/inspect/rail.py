@@ -9,7 +9,7 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.report import fault, percent
-from flexarm_env.identify.inspect.series import Series
+from flexarm_env.identify.inspect.series import Floats, Series
 from flexarm_env.identify.settings import Inspecting
 from flexarm_env.recordings.columns import UNITS
 from flexarm_env.recordings.recording import Recording
@@ -23,7 +23,7 @@ def rail(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
     found = []
     series = {signal: Series.of(recording, signal, numbers) for signal in recording.signals}
     for signal, one in series.items():
-        ends = [end for end in (-1, 1) if _stands_at(end, signal, series, arm, numbers)]
+        ends = [end for end in (-1, 1) if _stands_at(end, signal, series, numbers)]
         if not ends:
             continue
         levels = [float((end * one.values).max()) * end for end in ends]
@@ -32,11 +32,9 @@ def rail(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
         both = len(levels) == 2 and math.isclose(*np.abs(levels), rel_tol=numbers.same_jump)
         ends_text = f"±{abs(value):.5g}" if both else " and ".join(f"{level:.5g}" for level in levels)
         unit = UNITS[signal]
-        text = (
-            f"stands at its extreme of {ends_text} {unit} in {percent(float(at_level.mean()))} of the rows: it is cut off there"
-        )
+        text = f"stands at its extreme of {ends_text} {unit} in {percent(float(at_level.mean()))} of the rows"
         low, high = _range(one, levels)
-        hint = f'{signal} = {{ range = ["{low:.6g} {unit}", "{high:.6g} {unit}"] }}'
+        hint = f'{signal} = {{ range = ["{_within(low)} {unit}", "{_within(high)} {unit}"] }}'
         found.append(fault(recording, signal, "rail", abs(value) if both else value, text, hint, one.rows[at_level]))
     return found
 
@@ -48,7 +46,13 @@ def _range(series: Series, levels: list[float]) -> tuple[float, float]:
     return (low if low in levels else low - extent), (high if high in levels else high + extent)
 
 
-def _stands_at(end: int, signal: str, series: dict[str, Series], arm: Arm, numbers: Inspecting) -> bool:
+def _within(end: float) -> str:
+    """Format the end of a range so that the readings at it do not lie inside."""
+    text = f"{end:.6g}"
+    return text if abs(float(text)) <= abs(end) else repr(end)
+
+
+def _stands_at(end: int, signal: str, series: dict[str, Series], numbers: Inspecting) -> bool:
     """Whether a signal stands at its largest (end 1) or smallest (-1) reading by more than chance and rest explain."""
     one = series[signal]
     if len(one) < numbers.fewest_at_rail or one.step == 0.0:
@@ -56,17 +60,21 @@ def _stands_at(end: int, signal: str, series: dict[str, Series], arm: Arm, numbe
     values = end * one.values
     starts, lengths = one.runs()
     at_end = values[starts] == values.max()
-    count, longest = int(lengths[at_end].sum()), int(lengths[at_end].max())
-    if count < numbers.fewest_at_rail or longest < numbers.least_run:
+    count = int(lengths[at_end].sum())
+    if count < numbers.fewest_at_rail:
         return False
     follow = count - int(at_end.sum())
-    if _evidence(follow, count, _usual_repeats(one, values < values.max(), numbers)) < numbers.evidence:
-        return False
-    sensor = arm.sensors.get(signal, {"noise": 0.0, "resolution": 0.0})
-    if one.is_noisy or sensor["noise"] > numbers.flickers * one.step:
-        return True
+    repeated = _evidence(follow, count, _usual_repeats(one, values < values.max(), numbers)) > numbers.evidence
+    if one.flicker > numbers.flickers:
+        return repeated or _piles_up(values, one.step, count, numbers)
     episodes = starts[at_end & (lengths >= numbers.least_run)]
-    return _is_cut(values, episodes, one.step, numbers) and not _rests(end, signal, series, numbers)
+    return repeated and _is_cut(values, episodes, one.step, numbers) and not _rests(end, signal, series, numbers)
+
+
+def _piles_up(values: Floats, step: float, count: int, numbers: Inspecting) -> bool:
+    """Whether a flickering signal has more readings at its end than a step before it, where noise has fewer."""
+    before = int(np.sum(values > values.max() - (1 + 1 / 2) * step)) - count
+    return (count - before) > numbers.piled_up * math.sqrt(count + before)
 
 
 def _usual_repeats(series: Series, elsewhere: np.ndarray, numbers: Inspecting) -> float:
@@ -89,7 +97,7 @@ def _evidence(follow: int, count: int, usual: float) -> float:
     return count * (share * math.log(share / usual) + rest)
 
 
-def _is_cut(values: np.ndarray, episodes: np.ndarray, step: float, numbers: Inspecting) -> bool:
+def _is_cut(values: Floats, episodes: np.ndarray, step: float, numbers: Inspecting) -> bool:
     """Whether the signal runs into its extreme at a slope, where a motion that ends there comes in slowly."""
     before = np.maximum(episodes - numbers.least_run, 0)
     slopes = (values[episodes] - values[before]) / np.maximum(episodes - before, 1)

@@ -50,9 +50,9 @@ class Series:
         return np.diff(self.values)
 
     @property
-    def is_noisy(self) -> bool:
-        """Whether readings flicker by more than the step, so that they seldom repeat."""
-        return self.noise >= 2 * self.step
+    def flicker(self) -> float:
+        """Share of readings at which the signal turns back at once: two thirds for white noise, next to none for a motion."""
+        return float(np.mean(self.changes[1:] * self.changes[:-1] < 0.0)) if len(self) > 2 else 0.0
 
     def runs(self) -> tuple[Integers, Integers]:
         """Find stretches of equal readings; return the index of the first reading of each, and their lengths."""

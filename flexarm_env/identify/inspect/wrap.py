@@ -26,7 +26,7 @@ def wrap(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
         if modulus:
             times = "once" if len(steps) == 1 else f"{len(steps)} times"
             text = f"jumps by {shown(signal, modulus)} {times}, its whole range: it wraps"
-            hint = f'{signal} = {{ wrap = "{modulus:.5g} {UNITS[signal]}" }}'
+            hint = f'{signal} = {{ wrap = "{modulus:.8g} {UNITS[signal]}" }}'
             found.append(fault(recording, signal, "wrap", modulus, text, hint, series.rows[steps + 1]))
     return found
 
@@ -53,7 +53,8 @@ def wraps(series: Series, is_angle: bool, numbers: Inspecting) -> tuple[Integers
     is_turn = is_angle and abs(modulus - _TURN) < slack
     if is_turn and abs(modulus - _TURN) < numbers.same_jump * _TURN:
         modulus = _TURN
-    return (steps, modulus) if is_turn or _goes_on(series, steps, numbers) else (none, 0.0)
+    is_wrap = is_turn or _goes_on(series, steps, numbers) or _flickers(series, steps, numbers)
+    return (steps, modulus) if is_wrap else (none, 0.0)
 
 
 def _slopes(changes: Floats, steps: Integers) -> Floats:
@@ -82,3 +83,10 @@ def _goes_on(series: Series, steps: Integers, numbers: Inspecting) -> bool:
         if (moved > numbers.least_motion * series.noise).all():
             return True
     return False
+
+
+def _flickers(series: Series, steps: Integers, numbers: Inspecting) -> bool:
+    """Whether noise takes the signal across the end of its range and back: lost readings would all be one value."""
+    sides = series.values[steps], series.values[steps + 1]
+    low, high = np.minimum(*sides), np.maximum(*sides)
+    return len(steps) >= numbers.fewest_flickers and bool(np.ptp(low) > 0.0 and np.ptp(high) > 0.0)
