@@ -13,7 +13,7 @@ from flexarm_env.display import Shown
 from flexarm_env.effects import Catalogue, Effect, catalogue
 from flexarm_env.effects.catalogue import LAW_PORTS
 from flexarm_env.errors import InputError, did_you_mean
-from flexarm_env.parameters import INPUTS, SECTIONS, Parameter, check_bounds
+from flexarm_env.parameters import INPUTS, SECTIONS, Parameter, check_bounds, reading_noise
 from flexarm_env.sensors import Sensor, known_sensors
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ class Arm(Shown):
         sensors: settings of each measured signal.
         effects: parameters of each effect.
         fixed: paths of constants that a fit keeps.
+        auto_noise: signals whose noise is estimated from the recordings, `noise = "auto"` in the file. Their noise is 0 here.
         columns: the map of columns of foreign recordings, or None.
         fitted: value, low and high end of the 90 % interval and unit of each fitted path.
         origin: recordings, command and seed of the fit.
@@ -59,6 +60,7 @@ class Arm(Shown):
     sensors: Mapping[str, Values]
     effects: Mapping[str, Values] = field(default_factory=dict)
     fixed: Sequence[str] = ()
+    auto_noise: Sequence[str] = ()
     columns: Mapping[str, Any] | None = None
     fitted: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     origin: Mapping[str, Any] = field(default_factory=dict)
@@ -266,6 +268,23 @@ class Arm(Shown):
         if signal not in known_sensors():
             raise InputError(f"unknown signal '{signal}'{did_you_mean(signal, known_sensors())}")
         return known_sensors()[signal]
+
+    def reading_noise(self, signal: str) -> float:
+        """Look up the standard deviation of a reading, of its noise and of the rounding to steps, in the signal's unit.
+
+        Raises:
+            InputError: for a signal whose noise is estimated from recordings.
+
+        Example:
+            >>> round(Arm.load("thesis").reading_noise("arm_angle"), 5)
+            0.00205
+        """
+        if signal in self.auto_noise:
+            raise InputError(
+                f"arm '{self.name}' has noise = \"auto\" for {signal}, which only recordings give: "
+                f"write a number under [sensors.{signal}], as `flexarm compare` prints it"
+            )
+        return reading_noise(self.sensors[signal])
 
     def structure(self) -> Structure:
         """Build the linear part of the arm, with all linear effects applied."""

@@ -17,6 +17,8 @@ from flexarm_env.units import quantity
 if TYPE_CHECKING:
     from flexarm_env.arm import Arm
 
+#: Noise of a sensor that is estimated from the recordings.
+AUTO = "auto"
 TOP = ("name", "description", "fixed", "drive", "hub", "beam", "sensors", "effects", "columns", "fitted", "origin")
 
 
@@ -84,13 +86,14 @@ def arm_from_table(kind: type[Arm], table: Mapping[str, Any], name: str, known: 
         constants["beam"] = _section("beam", _table(table, "beam"))
     elif sum((constants["hub"]["inertia"], constants["drive"]["motor_inertia"])) <= 0.0:
         raise InputError("hub.inertia is 0 and there is no beam: nothing could move")
-    sensors = _sensors(_table(table, "sensors"))
+    sensors, auto_noise = _sensors(_table(table, "sensors"))
     arm = kind(
         name=str(table.get("name", name)),
         input=command,
         constants=constants,
         sensors=sensors,
         fixed=_fixed(table.get("fixed", []), constants, sensors),
+        auto_noise=auto_noise,
         columns=_table(table, "columns") if "columns" in table else None,
         fitted=_table(table, "fitted", {}),
         origin=_table(table, "origin", {}),
@@ -165,18 +168,22 @@ def _section(section: str, given: Mapping[str, Any]) -> dict[str, float]:
     return values
 
 
-def _sensors(given: Mapping[str, Any]) -> dict[str, dict[str, float]]:
+def _sensors(given: Mapping[str, Any]) -> tuple[dict[str, dict[str, float]], list[str]]:
+    """Read the settings of each sensor, and list those whose noise is estimated from recordings."""
     _refuse_unknown("sensors.", given, known_sensors())
     if not given:
         raise InputError("table [sensors] is empty: name at least one signal, as [sensors.arm_angle]")
-    sensors = {}
+    sensors, auto_noise = {}, []
     for signal in (signal for signal in known_sensors() if signal in given):
         table, settings = _table(given, signal), known_sensors()[signal].settings()
         _refuse_unknown(f"sensors.{signal}.", table, settings)
+        if table.get("noise") == AUTO:
+            auto_noise.append(signal)
+            table = table | {"noise": 0.0}
         values = {key: p.typical for key, p in settings.items()}
         values |= {key: _number(f"sensors.{signal}.{key}", value, settings[key]) for key, value in table.items()}
         sensors[signal] = values
-    return sensors
+    return sensors, auto_noise
 
 
 def _check_needs(arm: Arm) -> None:
@@ -229,7 +236,9 @@ def arm_text(arm: Arm) -> str:
         table = tomlkit.table()
         for key, value in values.items():
             setting = arm.parameter(f"sensors.{signal}.{key}")
-            if setting.typical != value:
+            if key == "noise" and signal in arm.auto_noise:
+                table[key] = AUTO
+            elif setting.typical != value:
                 _put(table, key, value, setting.unit)
         sensors[signal] = table
     document["sensors"] = sensors

@@ -83,7 +83,7 @@ GAP = estimate("effects.backlash.gap", 0.0612, 0.003, "rad")
 KPHI = estimate("drive.torque_constant", 0.3312, 0.0021, "Nm/A", 0.33)
 
 
-def fake_compare(arm, recordings, progress=None):
+def fake_compare(arm, recordings, progress=None, rate=None):
     def replay(r: Recording) -> Replay:
         model = {s: v - 0.1 * (v - v.mean()) for s, v in r.signals.items()}
         return Replay(r.name, r.time, r.signals, model, model, np.zeros(len(r), dtype=np.int64))

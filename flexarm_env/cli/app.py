@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from flexarm_env.cli import arguments
-from flexarm_env.cli.options import ArmName, Columns, Effects, Json, Recordings, RecordingsOrNone, Report, Save, Seed
+from flexarm_env.cli.options import ArmName, Columns, Effects, Json, Rate, Recordings, RecordingsOrNone, Report, Save, Seed
 
 app = typer.Typer(
     add_completion=False,
@@ -68,6 +68,7 @@ def compare(
     arm: ArmName = "thesis",
     columns: Columns = None,
     effects: Effects = None,
+    rate: Rate = None,
     report: Report = None,
     json: Json = None,
 ) -> None:
@@ -78,10 +79,10 @@ def compare(
     from flexarm_env.terminal import identification, plain_data, tables
     from flexarm_env.terminal.provenance import provenance
 
-    result = identification.compare(model, runs)
+    result = identification.compare(model, runs, rate)
     hand_out("compare", arm, runs, None, json, plain_data.of_comparison(result), tables.comparison(result))
     if report is not None:
-        made = given.command_line("compare") | provenance("compare", arm, runs, None)
+        made = given.command_line("compare", rate=rate) | provenance("compare", arm, runs, None)
         identification.write_page(report, runs, result, None, made)
 
 
@@ -91,6 +92,7 @@ def diagnose(
     arm: ArmName = "thesis",
     columns: Columns = None,
     effects: Effects = None,
+    rate: Rate = None,
     report: Report = None,
     save: Save = None,
     next_run: Annotated[
@@ -123,7 +125,7 @@ def diagnose(
     from flexarm_env.terminal import identification, tables
     from flexarm_env.terminal.provenance import provenance
 
-    result = identification.diagnose(model, runs, seed, jobs)
+    result = identification.diagnose(model, runs, seed, jobs, rate)
     if next_run is not None and result.next_run is not None:
         write_whole(next_run, result.next_run.as_csv())
     elif next_run is not None:
@@ -134,8 +136,8 @@ def diagnose(
     elif save is not None:
         result.arm.save(save)
     if report is not None:
-        made = given.command_line("diagnose", seed) | provenance("diagnose", arm, runs, seed)
-        identification.write_page(report, runs, identification.compare(result.nominal, runs), result, made)
+        made = given.command_line("diagnose", seed, rate) | provenance("diagnose", arm, runs, seed)
+        identification.write_page(report, runs, identification.compare(result.nominal, runs, rate), result, made)
     if result.verdict in ("unknown", "insufficient_data", "recordings"):
         raise typer.Exit(1)
 
@@ -147,6 +149,7 @@ def add(
     arm: ArmName = "thesis",
     columns: Columns = None,
     effects: Effects = None,
+    rate: Rate = None,
     save: Save = None,
     seed: Seed = 0,
     json: Json = None,
@@ -159,7 +162,7 @@ def add(
     from flexarm_env.terminal import identification, plain_data, tables
 
     arguments.show_faults(identification.faults(model, runs))
-    result = identification.add(load_effect(effect).name if own else effect, model, runs, seed)
+    result = identification.add(load_effect(effect).name if own else effect, model, runs, seed, rate)
     hand_out("add", arm, runs, seed, json, plain_data.of_addition(result), tables.addition(result))
     if save is not None:
         result.arm.save(save)
@@ -174,6 +177,7 @@ def fit(
     arm: ArmName = "thesis",
     columns: Columns = None,
     effects: Effects = None,
+    rate: Rate = None,
     save: Save = None,
     seed: Seed = 0,
     json: Json = None,
@@ -184,7 +188,7 @@ def fit(
     from flexarm_env.terminal import identification, plain_data, tables
 
     arguments.show_faults(identification.faults(model, runs))
-    result = identification.fit(model, runs, seed)
+    result = identification.fit(model, runs, seed, rate)
     hand_out("fit", arm, runs, seed, json, plain_data.of_fit(result), tables.fit(result))
     if save is not None:
         result.arm.save(save)

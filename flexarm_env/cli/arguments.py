@@ -78,11 +78,11 @@ class Given:
         show_notes(recordings)
         return arm, recordings
 
-    def command_line(self, name: str, seed: int | None = None) -> dict[str, str]:
+    def command_line(self, name: str, seed: int | None = None, rate: float | None = None) -> dict[str, str]:
         """Write the command line that does this again, for the report."""
         from flexarm_env.terminal.provenance import command_line
 
-        return {"command_line": command_line(name, self.recordings, self.arm, self.columns, self.effects or (), seed)}
+        return {"command_line": command_line(name, self.recordings, self.arm, self.columns, self.effects or (), seed, rate)}
 
 
 def required(recordings: Sequence[Path] | None, command: str) -> Sequence[Path]:
@@ -110,7 +110,7 @@ def show_notes(recordings: Sequence[Recording]) -> None:
     """Print on stderr how files were read, where a person might expect otherwise."""
     for recording in recordings:
         for note in recording.notes:
-            typer.echo(f"Note: {recording.source}: {note}", err=True)
+            typer.echo(f"Note: {recording.source or recording.name}: {note}", err=True)
 
 
 def show_faults(faults: Sequence[str]) -> None:

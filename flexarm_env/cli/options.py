@@ -23,4 +23,8 @@ Effects = Annotated[
 Json = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for stdout.")]
 Report = Annotated[Path | None, typer.Option(metavar="FILE.html", help="Write a page with figures.")]
 Save = Annotated[Path | None, typer.Option(metavar="ARM.toml", help="Write the arm that results.")]
+Rate = Annotated[
+    float | None,
+    typer.Option(metavar="HZ", help="Samples per second to keep; 0 keeps all.", show_default="as many as the arm needs"),
+]
 Seed = Annotated[int, typer.Option(min=0, help="Seed of all random draws.")]

@@ -53,6 +53,7 @@ def simulate(
     with progress("simulating"):
         made = flexarm_env.simulate(arm, played, *settings)
     made.write(save)
+    show_notes([made])
     reach = {signal: [float(values.min()), float(values.max())] for signal, values in made.signals.items()}
     rows = [[words.label_of(s), *map(words.number, ends), words.unit_of(s)] for s, ends in reach.items()]
     count = f"{len(made)} samples, {made.duration:g} s at {1.0 / made.sample_time:.4g} Hz"

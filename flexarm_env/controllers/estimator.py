@@ -9,7 +9,6 @@ from flexarm_env.arm import Arm
 from flexarm_env.controllers.base import Floats
 from flexarm_env.controllers.slow import slow_part
 from flexarm_env.errors import InputError
-from flexarm_env.parameters import reading_noise
 
 #: Motion faster than this [Hz] is taken to follow at once. Control at 200 Hz should not act on it: the thesis-fem arm's third
 #: vibration (44 Hz) moves with the payload, and an LQG that relies on it swings without end at 0.3 kg.
@@ -35,7 +34,7 @@ class Estimator:
         highest_frequency: of the vibrations that are followed [Hz].
 
     Raises:
-        InputError: for an arm with a state that is not observable from its readings.
+        InputError: for an arm with a state that is not observable from its readings, or with noise that only recordings give.
     """
 
     def __init__(self, arm: Arm, interval: float, highest_frequency: float = HIGHEST_FREQUENCY) -> None:
@@ -50,7 +49,7 @@ class Estimator:
         self.drift = np.append(self.model.response[:, 1], 0.0) * (torque := arm.structure().hub_torque)
         self.offset = self.model.offset + self.model.direct[:, 1] * torque
         self.output = np.hstack([self.model.output, self.model.direct[:, 1:]])
-        noise = [max(reading_noise(s), LEAST_NOISE) for s in arm.sensors.values()]
+        noise = [max(arm.reading_noise(signal), LEAST_NOISE) for signal in arm.sensors]
         extra = [STRAIN_LEFT_OUT * arm.sensor(signal).strain for signal in arm.sensors]
         self.gain = _gain(self.transition, self.output, self._process(interval), np.hypot(noise, extra), arm.name)
         self._angle = self.model.signals.index("arm_angle")

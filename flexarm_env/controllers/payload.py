@@ -9,7 +9,6 @@ from flexarm_env.controllers.base import Floats
 from flexarm_env.controllers.estimator import LEAST_NOISE
 from flexarm_env.errors import InputError
 from flexarm_env.linear import linearise
-from flexarm_env.parameters import reading_noise
 
 #: Payloads [kg] between which frequencies are interpolated.
 LARGEST, STEPS = 0.6, 25
@@ -50,13 +49,12 @@ class PayloadEstimator:
             )
         self.frequencies, self.payloads = frequency_table(arm, interval)
         self._gage, self._speed = (list(arm.signals).index(signal) for signal in (gage, "motor_speed"))
-        sensor, tach = arm.sensors[gage], arm.sensors["motor_speed"]
-        self._offset, self._gears = sensor["offset"], arm.constants["drive"]["gear_ratio"]
+        self._offset, self._gears = arm.sensors[gage]["offset"], arm.constants["drive"]["gear_ratio"]
         corner = 2.0 * np.pi * CORNER * self.frequencies[-1]
         self._corner, self._blend = corner, corner * interval / (2.0 + corner * interval)
         self._interval, self._fade = interval, np.exp(-interval / MEMORY)
         self._every = max(round(BETWEEN / interval), 1)
-        noise = [max(reading_noise(s), LEAST_NOISE) for s in (sensor, tach)]
+        noise = [max(arm.reading_noise(signal), LEAST_NOISE) for signal in (gage, "motor_speed")]
         self._rest = AT_REST * np.array(noise)[:, None] / [[1.0], [self._gears]]
         self._enough = ENOUGH * noise[0] ** 2
         #: Regularisation of g by the tachometer's noise, so that it is not estimated from noise on a stuck hub.

@@ -49,6 +49,8 @@ class Setup:
             raise InputError(f"arm '{self.arm.name}' has no limit of its drive; set limit under [drive] in its file")
         if not self.arm.sensors:
             raise InputError(f"arm '{self.arm.name}' has no sensors; an environment needs one at least")
+        for signal in self.arm.sensors:
+            self.arm.reading_noise(signal)  # refuses noise that only recordings give
 
     @property
     def samples(self) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -40,7 +41,7 @@ def simulate(
         duration: [s]; a recording brings its own.
         rate: samples per second [Hz]; a recording brings its own.
         seed: of noise, pulses and phases.
-        noise: whether readings get noise and the sensor's steps.
+        noise: whether readings get noise and the sensor's steps. A sensor with noise = "auto" gets none, and a note says so.
         name: of the recording; that of the input by default.
 
     Raises:
@@ -60,9 +61,17 @@ def simulate(
         True
     """
     if isinstance(input, str) and input in EXPERIMENTS:
-        return _perform(arm, input, _samples(duration, rate), rate, seed, noise, name or input)
-    source = input if isinstance(input, Recording) else _read(input)
-    return _replay(arm, source, seed, noise, name or source.name)
+        made = _perform(arm, input, _samples(duration, rate), rate, seed, noise, name or input)
+    else:
+        source = input if isinstance(input, Recording) else _read(input)
+        made = _replay(arm, source, seed, noise, name or source.name)
+    return replace(made, notes=_notes(arm)) if noise else made
+
+
+def _notes(arm: Arm) -> tuple[str, ...]:
+    """Name the signals that have no noise because only recordings give it."""
+    signals = ", ".join(signal for signal in arm.signals if signal in arm.auto_noise)
+    return (f'no noise on {signals}: noise = "auto" holds for recordings; write a number for one here',) if signals else ()
 
 
 def _perform(arm: Arm, experiment: str, count: int, rate: float, seed: int, noise: bool, name: str) -> Recording:

@@ -32,6 +32,7 @@ def diagnose(
     jobs: int = 2,
     settings: Settings = SETTINGS,
     criteria: CriteriaFactory = ThresholdCriteria,
+    rate: float | None = None,
 ) -> Diagnosis:
     """Diagnose an arm against recordings.
 
@@ -43,6 +44,7 @@ def diagnose(
         jobs: processes.
         settings: numbers of the method.
         criteria: by which effects are accepted.
+        rate: samples per second [Hz] that are kept; 0 keeps all. By default, as many as the arm needs.
 
     Returns:
         The verdict, the missing effects, and the corrected arm; or the faults of the recordings, which are looked for first.
@@ -59,7 +61,7 @@ def diagnose(
     """
     began = time.perf_counter()
     constants, searching, outlook = Progress.to(progress).split(1, 18, 1)
-    nominal, dataset = prepare(arm, recordings, settings)
+    nominal, dataset = prepare(arm, recordings, settings, rate)
     constants.at(0.0, "inspecting the recordings")
     inspected = inspect_recordings(arm, recordings, settings)
     if inspected.faults:

@@ -30,6 +30,7 @@ def fit(
     seed: int = 0,
     jobs: int = 2,
     settings: Settings = SETTINGS,
+    rate: float | None = None,
 ) -> Fit:
     """Calibrate the constants of an arm.
 
@@ -40,6 +41,7 @@ def fit(
         seed: recorded with the result.
         jobs: threads.
         settings: numbers of the method.
+        rate: samples per second [Hz] that are kept; 0 keeps all. By default, as many as the arm needs.
 
     Raises:
         InputError: for recordings that do not fit the arm, and for an arm that leaves nothing to fit.
@@ -53,7 +55,7 @@ def fit(
         True
     """
     began, say = time.perf_counter(), Progress.to(progress)
-    nominal, dataset = prepare(arm, recordings, settings)
+    nominal, dataset = prepare(arm, recordings, settings, rate)
     if not free_parameters(nominal, nominal, dataset):
         raise InputError(
             f"arm '{arm.name}' leaves nothing to fit: every constant is fixed, known exactly or 0; "
@@ -74,6 +76,7 @@ def fit(
         free_run={"nominal": before.free_run, "refitted": after.free_run},
         seconds=time.perf_counter() - began,
         settings=settings,
+        notes=list(dataset.notes),
     )
 
 
@@ -85,6 +88,7 @@ def add(
     seed: int = 0,
     jobs: int = 2,
     settings: Settings = SETTINGS,
+    rate: float | None = None,
 ) -> Addition:
     """Add one effect to an arm and calibrate everything.
 
@@ -96,6 +100,7 @@ def add(
         seed: recorded with the result.
         jobs: threads.
         settings: numbers of the method.
+        rate: samples per second [Hz] that are kept; 0 keeps all. By default, as many as the arm needs.
 
     Raises:
         InputError: for an unknown effect, one that the arm has already or cannot have, or recordings that do not fit.
@@ -113,7 +118,7 @@ def add(
         raise InputError(f"arm '{arm.name}' has effect '{effect}' already; `flexarm fit` refits it")
     arm.with_effect(effect)
     constants, adding = say.split(2, 3)
-    nominal, dataset = prepare(arm.without_effect(effect), recordings, settings)
+    nominal, dataset = prepare(arm.without_effect(effect), recordings, settings, rate)
     constants.at(0.0, "refitting the constants")
     workers = Workers(jobs)
     with workers.threads():
@@ -133,6 +138,7 @@ def add(
         free_run={name: s.free_run for name, s in zip(names, scores, strict=True)},
         seconds=time.perf_counter() - began,
         settings=settings,
+        notes=list(dataset.notes),
     )
 
 

@@ -25,7 +25,7 @@ def with_origin(
     """Give `arm` the values and effects of `fitted`, their intervals, and their origin.
 
     Args:
-        arm: as it came, with all its sensors.
+        arm: as it came, with all its sensors and their stated noise.
         fitted: the same with fitted values, perhaps with fewer sensors.
         values: the fitted values.
         recordings: to which they were fitted.
@@ -33,7 +33,7 @@ def with_origin(
         seed: recorded with the result.
         settings: numbers of the method; the arm keeps their digest.
     """
-    table: dict[str, dict[str, Any]] = {e.path: e.as_json() for e in values}
+    fits: dict[str, dict[str, Any]] = {e.path: e.as_json() for e in values}
     origin = {
         "command": command,
         "version": __version__,
@@ -41,11 +41,15 @@ def with_origin(
         "settings": settings.digest(),
         "recordings": [{"name": r.name, "sha256": r.sha256} for r in recordings],
     }
-    sensors = {**arm.sensors, **fitted.sensors}
+    sensors = {
+        signal: {**values, **fitted.sensors.get(signal, {}), "noise": values["noise"], "resolution": values["resolution"]}
+        for signal, values in arm.sensors.items()
+    }
     return replace(
         fitted,
         name=arm.name if arm.name.endswith("-fitted") else f"{arm.name}-fitted",
-        sensors={signal: sensors[signal] for signal in arm.sensors},
-        fitted=table,
+        sensors=sensors,
+        auto_noise=arm.auto_noise,
+        fitted=fits,
         origin=origin,
     )

@@ -30,6 +30,7 @@ class Fit:
         free_run: the same, replayed once from the start.
         seconds: time taken.
         settings: numbers of the method.
+        notes: a sentence each for a person, on the recordings.
     """
 
     arm: Arm
@@ -38,6 +39,7 @@ class Fit:
     free_run: dict[str, float]
     seconds: float
     settings: Settings = SETTINGS
+    notes: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -52,6 +54,7 @@ class Addition:
         free_run: the same, replayed once from the start.
         seconds: time taken.
         settings: numbers of the method.
+        notes: a sentence each for a person, on the recordings.
     """
 
     arm: Arm
@@ -61,6 +64,7 @@ class Addition:
     free_run: dict[str, float]
     seconds: float
     settings: Settings = SETTINGS
+    notes: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True)

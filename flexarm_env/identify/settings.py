@@ -117,8 +117,27 @@ class Preparation:
     """How recordings are prepared, split and checked before anything is calibrated."""
 
     held_out_share: float = tuned(0.35, "Share of each recording, at its end, that no calibration sees.")
-    default_noise: float = tuned(2e-3, "Noise of a signal without stated noise, over the signal's range.")
+    default_noise: float = tuned(
+        2e-3,
+        "Noise of a signal that states none and shows none, over the signal's range.",
+        "first value not known; since noise is estimated, only for signals too short or too still for that",
+    )
+    least_noise_share: float = tuned(
+        1e-6,
+        "Estimated noise is at least this share of the signal's range.",
+        "one step of a converter of 20 bits, finer than those of laboratories: simulated signals without noise end here",
+    )
     least_noise: float = tuned(1e-12, "Noise of a constant signal without stated noise.", "guards a division", "SI")
+    noise_disagrees: float = tuned(
+        2.0,
+        "Ratio of estimated to stated noise, or its reverse, that is worth a note.",
+        "estimates on simulated arms lie within 15 %; none of the practice recordings and simulated arms reaches it",
+    )
+    motion_adds: float = tuned(
+        1.5,
+        "Ratio of the noise at rest and in motion at which a note gives both.",
+        "on simulated arms at 100 Hz, whose noise is the same in both, starts and stops alone make up to 1.5",
+    )
     uneven: float = tuned(1e-3, "Sampling counts as uneven where a step differs from the median by more than this share.")
     window: float = tuned(1.0, "Length of the windows in which errors are measured.", "chosen for the public definition", "s")
     least_window_samples: int = tuned(10, "Shortest window.", unit="samples")
@@ -143,6 +162,50 @@ class Preparation:
         0.1,
         "Share of a recording's time and samples that stays held out.",
         "limits that act once, late, after misses of saturation in seed 5; no sweep recorded",
+    )
+
+
+@dataclass(frozen=True)
+class Thinning:
+    """Samples that are left out of recordings whose rate is far above what the arm needs."""
+
+    longest_step: float = tuned(
+        0.004,
+        "Longest step of thinned recordings.",
+        "two thirds of the smallest typical delay in the catalogue (6 ms: input_delay, time_offset); lags are typically 10 ms",
+        "s",
+    )
+    share_of_lag: float = tuned(
+        0.5,
+        "Longest step over the shortest time constant of the arm's sensors and drive.",
+        "two samples in each time constant, as for the longest step and typical lags of 10 ms",
+    )
+    samples_per_period: float = tuned(
+        20.0,
+        "Samples in a period of the fastest vibration that rises above the noise.",
+        "the mean of a command over a step then excites it by 0.4 % less than the command itself: 1 - sinc(1/20)",
+    )
+    seen: float = tuned(
+        20.0,
+        "Power of a signal in a window over that of its noise at which a vibration counts.",
+        "white noise exceeds it once in 5e8 bins; `thesis` under square waves of 2 s shows its second vibration at 45",
+    )
+    always_seen: int = tuned(
+        2,
+        "Slowest vibrations of the free and of the held hub that count, seen or not.",
+        "a recording of `thesis` in which nothing moves, at 500 Hz, keeps its samples",
+    )
+    band: float = tuned(
+        1.33, "Ratio to an eigenfrequency within which power counts as its own.", "constants of practice machines are off by 30 %"
+    )
+    spectrum_samples: int = tuned(256, "Length of the windows.", "half a second at 500 Hz: vibrations decay", "samples")
+    displacement: float = tuned(
+        0.2,
+        "Displacement of the free and rigid arm by the mean command, rms over the noise of its angle, that is left.",
+        "raises an error of 1 to 1.02, a fifth of what counts as nothing left (`errors.nothing_left`)",
+    )
+    fewest_samples: int = tuned(
+        500, "Fewest samples that a thinned recording keeps.", "two seconds at the longest step; no sweep recorded", "samples"
     )
 
 
@@ -699,6 +762,7 @@ class Settings:
 
     errors: ErrorScale = ErrorScale()
     preparation: Preparation = Preparation()
+    thinning: Thinning = Thinning()
     reference: ReferenceSizes = ReferenceSizes()
     initial_states: InitialStates = InitialStates()
     process_noise: ProcessNoise = ProcessNoise()

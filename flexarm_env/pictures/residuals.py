@@ -55,7 +55,9 @@ def drivers(comparison: Comparison, recordings: Sequence[Recording]) -> list[Dri
     if all(speed is not None for speed in speeds):
         found.append(Driver("arm speed", "rad/s", np.concatenate(speeds)))  # type: ignore[arg-type]
     unit = "A" if comparison.arm.input == "current" else "V"
-    found.append(Driver(comparison.arm.input, unit, np.concatenate([one.command for one in recordings])))
+    pairs = zip(replays, recordings, strict=True)  # a comparison may have left out samples
+    commands = [run.command[np.searchsorted(run.time - run.time[0], one.time)] for one, run in pairs]
+    found.append(Driver(comparison.arm.input, unit, np.concatenate(commands)))
     return found
 
 

@@ -48,7 +48,7 @@ class Recording(Shown):
             `start` [s], how long the run had gone on before the first sample: times of effects count from that sample.
         source: the path it was read from; "" if from none.
         sha256: of that file's content; "" if from none.
-        notes: one line each on how the file was read, where a person might expect otherwise.
+        notes: one line each on how the recording was read or made, where a person might expect otherwise.
         gaps: for each step over three median steps, the index of the sample before it and its length [s].
     """
 

@@ -26,10 +26,10 @@ def inspect(arm: Arm, recordings: Sequence[Recording]) -> Overview:
         return overview(arm, list(recordings), bar)
 
 
-def compare(arm: Arm, recordings: Sequence[Recording]) -> Comparison:
+def compare(arm: Arm, recordings: Sequence[Recording], rate: float | None = None) -> Comparison:
     """Compare an arm with its recordings; faults of these are among the notes."""
     with progress("comparing") as bar:
-        found = flexarm_env.compare(arm, list(recordings), progress=bar)
+        found = flexarm_env.compare(arm, list(recordings), progress=bar, rate=rate)
         return replace(found, notes=[*faults(arm, recordings), *found.notes])
 
 
@@ -38,23 +38,23 @@ def faults(arm: Arm, recordings: Sequence[Recording]) -> list[str]:
     return flexarm_env.inspect_recordings(arm, list(recordings)).notes
 
 
-def fit(arm: Arm, recordings: Sequence[Recording], seed: int) -> Fit:
+def fit(arm: Arm, recordings: Sequence[Recording], seed: int, rate: float | None = None) -> Fit:
     """Refit the constants."""
     with progress("fitting") as bar:
-        return flexarm_env.fit(arm, list(recordings), progress=bar, seed=seed)
+        return flexarm_env.fit(arm, list(recordings), progress=bar, seed=seed, rate=rate)
 
 
-def add(effect: str, arm: Arm, recordings: Sequence[Recording], seed: int) -> Addition:
+def add(effect: str, arm: Arm, recordings: Sequence[Recording], seed: int, rate: float | None = None) -> Addition:
     """Add an effect and refit."""
     arm.with_effect(effect)  # refuses an impossible effect before a bar shows
     with progress(f"adding {effect}") as bar:
-        return flexarm_env.add(effect, arm, list(recordings), progress=bar, seed=seed)
+        return flexarm_env.add(effect, arm, list(recordings), progress=bar, seed=seed, rate=rate)
 
 
-def diagnose(arm: Arm, recordings: Sequence[Recording], seed: int, jobs: int) -> Diagnosis:
+def diagnose(arm: Arm, recordings: Sequence[Recording], seed: int, jobs: int, rate: float | None = None) -> Diagnosis:
     """Find out whether constants are wrong or an effect is missing."""
     with progress("diagnosing") as bar:
-        return flexarm_env.diagnose(arm, list(recordings), progress=bar, seed=seed, jobs=jobs)
+        return flexarm_env.diagnose(arm, list(recordings), progress=bar, seed=seed, jobs=jobs, rate=rate)
 
 
 def write_page(

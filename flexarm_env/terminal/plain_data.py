@@ -28,6 +28,7 @@ def of_fit(result: Fit) -> dict[str, Any]:
         "error": result.error,
         "free_run": result.free_run,
         "constants": {words.constant_name(e): e.as_json() for e in result.estimates},
+        "notes": result.notes,
         "settings": result.settings.as_json(),
         "seconds": round(result.seconds, 1),
     }
@@ -44,6 +45,7 @@ def of_addition(result: Addition) -> dict[str, Any]:
         "error": result.error,
         "free_run": result.free_run,
         "constants": {words.constant_name(e): e.as_json() for e in others},
+        "notes": result.notes,
         "settings": result.settings.as_json(),
         "seconds": round(result.seconds, 1),
     }

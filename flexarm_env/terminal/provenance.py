@@ -31,6 +31,7 @@ def command_line(
     columns: Path | None = None,
     effects: Sequence[str] = (),
     seed: int | None = None,
+    rate: float | None = None,
 ) -> str:
     """Write the command line that makes a result again.
 
@@ -41,10 +42,12 @@ def command_line(
         columns: a file with a column map.
         effects: effects of the user's own, as "FILE.py:Name".
         seed: of the method; None if it has none.
+        rate: samples per second that are kept [Hz], if the user set it.
     """
     words = ["flexarm", command, *map(str, recordings), "--arm", arm]
     words += ["--columns", str(columns)] if columns is not None else []
     words += [word for spec in effects for word in ("--effects", spec)]
+    words += ["--rate", f"{rate:g}"] if rate is not None else []
     words += ["--seed", str(seed)] if seed is not None else []
     return shlex.join(words)
 

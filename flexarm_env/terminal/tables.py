@@ -192,6 +192,7 @@ def addition(result: Addition) -> list[RenderableType]:
         Text(words.addition(result), style="bold"),
         steps(words.steps_of(result.error, [result.effect]), words.steps_of(result.free_run, [result.effect])),
         *estimates("Values", result.estimates),
+        *_notes(result.notes),
     ]
 
 
@@ -201,4 +202,5 @@ def fit(result: Fit) -> list[RenderableType]:
         Text(f"Refitted, the held-out error goes {words.arrows(result.error)} × the noise.", style="bold"),
         steps(words.steps_of(result.error), words.steps_of(result.free_run)),
         *estimates("Constants", result.estimates),
+        *_notes(result.notes),
     ]

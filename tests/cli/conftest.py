@@ -38,20 +38,20 @@ def identify(monkeypatch) -> SimpleNamespace:
     """Quick stand-ins for the identification, which record what they were called with."""
     calls = SimpleNamespace(log=[], verdict="effects", effects=("backlash",), final=1.02)
 
-    def compare(arm, recordings, progress=None):
+    def compare(arm, recordings, progress=None, rate=None):
         calls.log.append(("compare", arm, recordings))
         return fake_compare(arm, recordings)
 
-    def diagnose(arm, recordings, progress=None, seed=0, jobs=2):
+    def diagnose(arm, recordings, progress=None, seed=0, jobs=2, rate=None):
         calls.log.append(("diagnose", arm, recordings, seed, jobs))
         return fake_diagnosis(arm, calls.verdict, calls.effects, seed)
 
-    def add(effect, arm, recordings, progress=None, seed=0):
+    def add(effect, arm, recordings, progress=None, seed=0, rate=None):
         calls.log.append(("add", effect, arm, recordings, seed))
         error = {"nominal": 4.1, "refitted": 3.7, "final": calls.final}
         return Addition(arm.with_effect(effect), effect, [GAP, KPHI], error, error, 1.0)
 
-    def fit(arm, recordings, progress=None, seed=0):
+    def fit(arm, recordings, progress=None, seed=0, rate=None):
         calls.log.append(("fit", arm, recordings, seed))
         error = {"nominal": 4.1, "refitted": 3.7}
         return Fit(arm.with_values({"drive.torque_constant": 0.3312}), [KPHI], error, error, 1.0)

@@ -23,7 +23,11 @@ REGIMES = ("stuck", "moving slowly", "moving fast")
 
 
 def compare(
-    arm: Arm, recordings: Sequence[Recording], progress: ProgressCallback | None = None, settings: Settings = SETTINGS
+    arm: Arm,
+    recordings: Sequence[Recording],
+    progress: ProgressCallback | None = None,
+    settings: Settings = SETTINGS,
+    rate: float | None = None,
 ) -> Comparison:
     """Replay recordings through an arm and measure where it fails. Nothing is fitted, so all samples count.
 
@@ -32,6 +36,7 @@ def compare(
         recordings: of the machine.
         progress: called with the share done and a text.
         settings: numbers of the method.
+        rate: samples per second [Hz] that are kept; 0 keeps all. By default, as many as the arm needs.
 
     Raises:
         InputError: for recordings that do not fit the arm.
@@ -43,7 +48,7 @@ def compare(
         >>> 0.9 < found.error < 1.1
         True
     """
-    reduced, dataset = prepare(arm, recordings, settings)
+    reduced, dataset = prepare(arm, recordings, settings, rate)
     notes, _ = preflight(dataset)
     plants = dataset.plants(reduced)
     observers = {payload: window_observers(reduced, plant, dataset) for payload, plant in plants.items()}

@@ -13,10 +13,12 @@ from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 from flexarm_env.experiments.payload import check_payload, plants_by_payload, stated_payload
 from flexarm_env.identify.replay.initial_state import Stretch, find_start
+from flexarm_env.identify.replay.reading_noise import SensorNoise, find_noise, is_open, with_found_noise
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.replay.scales import scales_of
+from flexarm_env.identify.replay.thinning import thin
 from flexarm_env.identify.settings import SETTINGS, Settings
-from flexarm_env.parameters import INPUTS, reading_noise
+from flexarm_env.parameters import INPUTS
 from flexarm_env.plant.plant import NO_INTERVALS, Plant
 from flexarm_env.recordings.recording import Recording
 
@@ -34,6 +36,7 @@ class Dataset:
         noise: (signals,) standard deviation, SI units.
         scales: by unit and for "command", sizes of quantities over those of the thesis's arm, which typical sizes fit.
         settings: numbers of the method.
+        notes: a line each for a person, on noise and on samples that are left out.
     """
 
     runs: tuple[Run, ...]
@@ -42,6 +45,7 @@ class Dataset:
     noise: Floats
     scales: Mapping[str, float]
     settings: Settings
+    notes: tuple[str, ...] = ()
 
     @functools.cached_property
     def fitted(self) -> tuple[Run, ...]:
@@ -67,13 +71,19 @@ class Dataset:
         return replace(self, runs=tuple(replace(run, train=np.ones_like(run.train)) for run in self.runs))
 
 
-def prepare(arm: Arm, recordings: Sequence[Recording], settings: Settings = SETTINGS) -> tuple[Arm, Dataset]:
+def prepare(
+    arm: Arm, recordings: Sequence[Recording], settings: Settings = SETTINGS, rate: float | None = None
+) -> tuple[Arm, Dataset]:
     """Reduce an arm to the sensors that all recordings have, and prepare the recordings for it.
 
     Args:
         arm: the model.
         recordings: of the machine.
         settings: numbers of the method.
+        rate: samples per second [Hz] that are kept; 0 keeps all. By default, as many as the arm needs.
+
+    Returns:
+        The arm, with the noise of its sensors, and the recordings.
 
     Raises:
         InputError: for recordings that do not fit the arm.
@@ -85,13 +95,37 @@ def prepare(arm: Arm, recordings: Sequence[Recording], settings: Settings = SETT
         raise InputError(f"no signal is in all recordings and in arm '{arm.name}', which has {', '.join(arm.signals)}")
     for recording in recordings:
         _check(arm, recording, settings.preparation.fewest_samples)
-    interval = float(np.median([r.sample_time for r in recordings]))
     arm = replace(arm, sensors={s: arm.sensors[s] for s in signals})
+    noises = find_noise(arm, recordings)
+    if is_open(noises, settings.preparation):
+        noises = find_noise(arm, recordings, _replayed(arm, _dataset(arm, recordings, noises, settings)))
+    arm = with_found_noise(arm, noises, settings.preparation)
+    units = [arm.sensor(s).unit for s in signals]
+    notes = [note for n, unit in zip(noises, units, strict=True) if (note := n.note(unit, settings.preparation))]
+    kept, thinned = thin(arm, recordings, _deviations(noises, settings), settings, rate)
+    return arm, replace(_dataset(arm, kept, noises, settings), notes=(*notes, *thinned))
+
+
+def _deviations(noises: Sequence[SensorNoise], settings: Settings) -> Floats:
+    return np.array([noise.deviation(settings.preparation) for noise in noises])
+
+
+def _dataset(arm: Arm, recordings: Sequence[Recording], noises: Sequence[SensorNoise], settings: Settings) -> Dataset:
+    signals = list(arm.signals)
+    interval = float(np.median([r.sample_time for r in recordings]))
     measured = [np.stack([r.signals[s] for s in signals], axis=1) for r in recordings]
-    noise = _noise(arm, signals, measured, settings)
+    noise = _deviations(noises, settings)
     runs = tuple(_run(r, m, signals, noise, interval, settings) for r, m in zip(recordings, measured, strict=True))
-    scales = scales_of(arm, runs, signals, settings.reference)
-    return arm, Dataset(runs, tuple(signals), interval, noise, scales, settings)
+    return Dataset(runs, tuple(signals), interval, noise, scales_of(arm, runs, signals, settings.reference), settings)
+
+
+def _replayed(arm: Arm, dataset: Dataset) -> list[Floats]:
+    """Replay each run freely: readings (samples, signals)."""
+    plants, found = dataset.plants(arm), []
+    for run in dataset.runs:
+        dataset.set_initial_state(plants[run.payload], run)
+        found.append(plants[run.payload].replay(run.command, run.intervals))
+    return found
 
 
 def _check(arm: Arm, recording: Recording, fewest: int) -> None:
@@ -101,14 +135,6 @@ def _check(arm: Arm, recording: Recording, fewest: int) -> None:
     check_payload(arm, recording)
     if len(recording) < fewest:
         raise InputError(f"{recording.name} has {len(recording)} samples; at least {fewest} are needed")
-
-
-def _noise(arm: Arm, signals: list[str], measured: list[Floats], settings: Settings) -> Floats:
-    numbers = settings.preparation
-    stated = [reading_noise(arm.sensors[s]) for s in signals]
-    spread = np.ptp(np.concatenate(measured), axis=0)
-    pairs = zip(stated, spread, strict=True)
-    return np.array([n if n > 0.0 else max(numbers.default_noise * w, numbers.least_noise) for n, w in pairs])
 
 
 def _run(recording: Recording, measured: Floats, signals: list[str], noise: Floats, interval: float, settings: Settings) -> Run:

@@ -14,7 +14,7 @@ def preflight(dataset: Dataset) -> tuple[list[str], bool]:
         Notes for a person, a line each; and whether the recordings are too poor to judge an arm.
     """
     numbers = dataset.settings.preparation
-    notes = []
+    notes = list(dataset.notes)
     for run in dataset.runs:
         if run.payload:
             notes.append(f"{run.name}: the arm carries the {run.payload:g} kg that the recording states as its payload")

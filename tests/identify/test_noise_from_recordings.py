@@ -1,0 +1,137 @@
+"""Noise that the arm file leaves to the recordings, and notes where the two disagree."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from flexarm_env import Arm, InputError, Recording, compare, fit, simulate
+from flexarm_env.controllers.estimator import Estimator
+from flexarm_env.env.setup import Setup
+from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.parameters import reading_noise
+from flexarm_env.tasks.slew import SLEW
+
+AUTO = """
+name = "auto"
+[drive]
+torque_constant = 0.33
+gear_ratio = 1.5
+motor_inertia = 0.002
+limit = 5
+[hub]
+inertia = 0.05
+[sensors.arm_angle]
+noise = "auto"
+[sensors.motor_speed]
+noise = "0.03 rad/s"
+"""
+
+
+def saved(tmp_path, text: str) -> Arm:
+    path = tmp_path / "arm.toml"
+    path.write_text(text)
+    return Arm.load(path)
+
+
+def unstated(arm: Arm, auto: bool = True) -> Arm:
+    """The arm without the noise of its sensors."""
+    sensors = {signal: {**table, "noise": 0.0, "resolution": 0.0} for signal, table in arm.sensors.items()}
+    return replace(arm, sensors=sensors, auto_noise=tuple(sensors) if auto else ())
+
+
+def test_auto_is_read_and_saved(tmp_path):
+    arm = saved(tmp_path, AUTO)
+    assert list(arm.auto_noise) == ["arm_angle"]
+    arm.save(tmp_path / "again.toml")
+    assert 'noise = "auto"' in (tmp_path / "again.toml").read_text()
+    assert Arm.load(tmp_path / "again.toml") == arm
+
+
+def test_another_word_is_refused(tmp_path):
+    with pytest.raises(InputError, match=r"sensors.arm_angle.noise"):
+        saved(tmp_path, AUTO.replace('"auto"', '"automatic"'))
+
+
+@pytest.mark.parametrize("auto", [True, False])
+@pytest.mark.parametrize(
+    ("name", "rate"), [("thesis", 100.0), ("thesis-fem", 500.0), ("cu-flexible", 250.0), ("cu-rigid", 1000.0)]
+)
+def test_the_noise_of_the_sensors_is_found(name, rate, auto):
+    arm = Arm.load(name)
+    runs = [simulate(arm, kind, duration=6.0, rate=rate, seed=4) for kind in ("pulse", "square")]
+    reduced, data = prepare(unstated(arm, auto), runs)
+    for signal, found in zip(data.signals, data.noise, strict=True):
+        assert found == pytest.approx(reading_noise(arm.sensors[signal]), rel=0.15), signal
+        assert reading_noise(reduced.sensors[signal]) == found
+    assert all("found in the recordings" in note for note in data.notes[: len(data.signals)])
+
+
+def test_a_stated_step_counts_where_the_recordings_do_not_show_it():
+    arm = Arm.load("cu-rigid")
+    sensors = {**arm.sensors, "arm_angle": {**arm.sensors["arm_angle"], "noise": 0.0, "resolution": 0.01}}
+    _, data = prepare(
+        replace(arm, sensors=sensors, auto_noise=("arm_angle",)), [simulate(arm, "pulse", duration=3.0, rate=200.0)]
+    )
+    assert data.noise[0] == pytest.approx(0.01 / 12**0.5)
+
+
+@pytest.mark.parametrize(("factor", "share"), [(7.0, "7 times as much"), (1.0 / 7.0, "1/7 of it"), (1.5, ""), (1.0 / 1.5, "")])
+def test_a_note_says_that_file_and_recordings_disagree(factor, share):
+    arm = Arm.load("thesis")
+    run = simulate(arm, "pulse", duration=6.0, rate=500.0)
+    table = arm.sensors["motor_speed"]
+    off = {**table, "noise": table["noise"] / factor, "resolution": table["resolution"] / factor}
+    notes = compare(replace(arm, sensors={**arm.sensors, "motor_speed": off}), [run], rate=0).notes
+    told = [note for note in notes if "the arm file says noise" in note]
+    assert len(told) == bool(share)
+    if share:
+        ratio = float(told[0].split("rad/s, ")[-1].removeprefix("1/").split()[0])
+        assert ratio == pytest.approx(7.0, rel=0.1)
+        assert "motor_speed" in told[0]
+        assert 'noise = "auto"' in told[0]
+
+
+@pytest.mark.parametrize("name", ["thesis", "thesis-fem", "cu-flexible", "cu-rigid", "emps"])
+@pytest.mark.parametrize("rate", [100.0, 1000.0])
+def test_sound_recordings_raise_no_note(name, rate):
+    arm = Arm.load(name)
+    if not arm.constants["drive"]["limit"]:
+        arm = arm.with_values({"drive.limit": 5.0})
+    runs = [simulate(arm, kind, duration=4.0, rate=rate, seed=3) for kind in ("pulse", "square", "sweep")]
+    assert not [note for note in prepare(arm, runs)[1].notes if "noise" in note]
+
+
+def test_the_practice_recordings_show_their_noise(measurements):
+    arm = Arm.load("thesis-fem")
+    for case in ("p01", "p04"):
+        _, data = prepare(unstated(arm), Recording.read_all(measurements / "practice" / case))
+        assert data.noise == pytest.approx([reading_noise(table) for table in arm.sensors.values()], rel=0.15)
+
+
+def test_a_fit_keeps_auto_and_says_the_noise(tmp_path):
+    arm = saved(tmp_path, AUTO)
+    machine = replace(arm.with_values({"hub.inertia": 0.055, "sensors.arm_angle.noise": 0.002}), auto_noise=())
+    found = fit(arm, [simulate(machine, "pulse", duration=3.0, rate=200.0)])
+    assert found.error["refitted"] == pytest.approx(1.0, abs=0.1)
+    assert any(note.startswith("arm_angle: noise 0.00") and note.endswith("found in the recordings") for note in found.notes)
+    assert found.arm.auto_noise == arm.auto_noise
+    found.arm.save(tmp_path / "fitted.toml")
+    assert Arm.load(tmp_path / "fitted.toml").sensors == found.arm.sensors
+
+
+def test_a_simulation_says_that_it_has_no_such_noise(tmp_path):
+    arm = saved(tmp_path, AUTO)
+    run = simulate(arm, "pulse", duration=2.0, rate=100.0)
+    assert len(run.notes) == 1
+    assert "no noise on arm_angle" in run.notes[0]
+    assert simulate(arm, "pulse", duration=2.0, rate=100.0, noise=False).notes == ()
+
+
+def test_environments_and_controllers_require_a_number(tmp_path):
+    arm = saved(tmp_path, AUTO)
+    with pytest.raises(InputError, match='noise = "auto" for arm_angle'):
+        Setup(SLEW, arm)
+    with pytest.raises(InputError, match='noise = "auto" for arm_angle'):
+        Estimator(arm, 0.005)
