@@ -20,7 +20,6 @@ SEARCH = [file for file in IDENTIFY if "select" in file.parts]
 IDENTIFY_LAYERS = (
     {"settings", "progress", "workers"},
     {"replay"},
-    {"inspect"},
     {"calibrate"},
     {"select"},
     {"inspect"},

@@ -51,7 +51,7 @@ def test_the_json_has_the_facts_of_the_tables_in_si_units(flexarm, folder):
     assert flexarm("inspect", folder / "sound", "--arm", "cu-rigid", "--json", "-") == 0
     found = json.loads(flexarm.out)
     assert found["command"] == "inspect"
-    assert [one["name"] for one in found["recordings"]] == ["pulse", "square"]
+    assert [one["name"] for one in found["files"]] == ["pulse", "square"]
     assert found["extents"]["pulse"]["rate"] == {"value": pytest.approx(200.0), "unit": "Hz"}
     assert found["extents"]["pulse"]["samples"] == 400
     assert found["faults"] == []
@@ -60,7 +60,9 @@ def test_the_json_has_the_facts_of_the_tables_in_si_units(flexarm, folder):
     assert [one["recording"] for one in angles] == ["pulse", "square"]
     run = simulate(arm, "pulse", duration=2.0, rate=200.0)
     assert (angles[0]["low"], angles[0]["high"]) == (run.signals["arm_angle"].min(), run.signals["arm_angle"].max())
-    assert angles[0]["resolution"] == pytest.approx(arm.sensors["arm_angle"]["resolution"])
+    assert angles[0]["resolution"] == 0.0  # nor does the arm's sensor have steps
+    assert angles[0]["noise"] == pytest.approx(arm.sensors["arm_angle"]["noise"], rel=0.2)
+    assert angles[0]["stated_noise"] == arm.sensors["arm_angle"]["noise"]
     assert (angles[0]["unit"], angles[0]["measured"]) == ("rad", 1.0)
     limits = found["excitation"]
     assert limits["constants"]["drive.torque_constant"]["unit"] == "Nm/A"
