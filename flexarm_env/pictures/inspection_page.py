@@ -25,6 +25,7 @@ def inspection_page(found: Overview, provenance: Mapping[str, Any]) -> str:
     parts = [
         paragraph(inspection_words.sentence(found), "verdict"),
         section("Faults", faults_table(faults)) if faults else "",
+        bullets(found.notes),
         section("Recordings", table(inspection_words.EXTENTS, inspection_words.extents(recordings))),
         section(
             "Signals",

@@ -77,7 +77,7 @@ def signals(arm: Arm, recordings: Sequence[Recording], found: Inspection) -> lis
     for one in found.signals:
         stated = stated_noise(arm, one.signal)
         ends = [number(one.low), number(one.high), words.plain_unit(one.unit)]
-        noise = [number(one.step, 2) if one.step else NOTHING, number(one.noise, 2), number(stated, 2) if stated else NOTHING]
+        noise = [number(value, 2) if value else NOTHING for value in (one.step, one.noise, stated)]
         share = f"{100 * one.samples / samples[one.recording]:.3g} %"
         rows.append([one.recording, words.label_of(one.signal), *ends, *noise, share])
     return rows

@@ -13,7 +13,7 @@ from flexarm_env.terminal.tables import table
 
 def inspection(found: Overview) -> list[RenderableType]:
     """Make the tables of an overview: faults, recordings, signals, constants, effects."""
-    lines = [Text(f"- {fault.line}") for fault in found.inspection.faults]
+    lines = [Text(f"- {line}") for line in (*found.inspection.notes, *found.notes)]
     excited = found.excitation
     signals = inspection_words.signals(found.arm, found.recordings, found.inspection)
     constants = table(

@@ -62,12 +62,22 @@ def estimate_excitation(
         >>> [one.state for one in found.effects if one.effect == "coulomb"]
         ['detectable']
     """
-    constants, effects = Progress.to(progress).split(1, 9)
-    reduced, dataset = prepare(arm, recordings, settings)
+    return excitation_of(*prepare(arm, recordings, settings), Progress.to(progress))
+
+
+def excitation_of(arm: Arm, dataset: Dataset, progress: Progress) -> Excitation:
+    """Estimate the excitation of an arm by a dataset.
+
+    Args:
+        arm: as given, with the sensors of the dataset.
+        dataset: the recordings.
+        progress: of the work.
+    """
+    constants, effects = progress.split(1, 9)
     constants.at(0.0, "constants")
-    base = _baseline(reduced, dataset)
-    rise_of = _rise_against(reduced, dataset)
-    names = sizeable(reduced)
+    base = _baseline(arm, dataset)
+    rise_of = _rise_against(arm, dataset)
+    names = sizeable(arm)
     found = []
     for number, name in enumerate(names):
         effects.at(number / len(names), name)

@@ -13,9 +13,9 @@ from flexarm_env.identify.inspect.catalogue import CHECKS
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.mend import mended
 from flexarm_env.identify.inspect.motion import motion_faults
-from flexarm_env.identify.inspect.series import Series
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.recordings.columns import UNITS
+from flexarm_env.recordings.noise import Readings, estimate_noise
 from flexarm_env.recordings.recording import Recording
 
 
@@ -30,8 +30,8 @@ class SignalFacts:
         low: smallest reading.
         high: largest reading.
         samples: how many readings there are.
-        step: smallest change between two readings in a row; 0 where none changes.
-        noise: standard deviation that the second differences show.
+        step: resolution of the readings; 0 where none shows.
+        noise: standard deviation of a reading, of noise and rounding; None where the readings show none.
     """
 
     recording: str
@@ -41,7 +41,7 @@ class SignalFacts:
     high: float
     samples: int
     step: float
-    noise: float
+    noise: float | None
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ def inspect_recordings(arm: Arm, recordings: Sequence[Recording], settings: Sett
         faults += found
         sound.append(left)
     faults += motion_faults(arm, sound, settings)
-    facts = tuple(_facts(r, signal, settings) for r in recordings for signal in r.signals)
+    facts = tuple(_facts(r, signal) for r in recordings for signal in r.signals)
     return Inspection(tuple(faults), facts, tuple(sound), time.perf_counter() - began)
 
 
@@ -111,7 +111,9 @@ def reading_faults(arm: Arm, recording: Recording, settings: Settings = SETTINGS
     return faults, recording
 
 
-def _facts(recording: Recording, signal: str, settings: Settings) -> SignalFacts:
-    series = Series.of(recording, signal, settings.inspecting)
-    low, high = (float(f(series.values)) if len(series) else float("nan") for f in (np.min, np.max))
-    return SignalFacts(recording.name, signal, UNITS[signal], low, high, len(series), series.step, series.noise)
+def _facts(recording: Recording, signal: str) -> SignalFacts:
+    values = recording.signals[signal][np.isfinite(recording.signals[signal])]
+    low, high = (float(f(values)) if len(values) else float("nan") for f in (np.min, np.max))
+    found = estimate_noise([Readings(recording.time, recording.signals[signal])])
+    step, noise = (found.resolution, found.total) if found else (0.0, None)
+    return SignalFacts(recording.name, signal, UNITS[signal], low, high, len(values), step, noise)

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.inspect.estimate_excitation import estimate_excitation
+from flexarm_env.identify.inspect.estimate_excitation import excitation_of
 from flexarm_env.identify.inspect.excitation import Excitation
 from flexarm_env.identify.inspect.inspection import Inspection, SignalFacts, inspect_recordings
 from flexarm_env.identify.progress import Progress, ProgressCallback
+from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.replay.preflight import preflight
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.parameters import INPUTS, reading_noise
 from flexarm_env.recordings.recording import Recording
@@ -25,18 +27,21 @@ class Overview:
         recordings: of the machine.
         inspection: facts on their signals, and the faults found.
         excitation: limits before any fit.
+        notes: a line each on noise, sampling and payload.
     """
 
     arm: Arm
     recordings: tuple[Recording, ...]
     inspection: Inspection
     excitation: Excitation
+    notes: tuple[str, ...] = ()
 
     def as_json(self) -> dict[str, Any]:
         """Convert to plain data, SI units beside the values."""
         return {
             "extents": {one.name: _extent(one) for one in self.recordings},
             "signals": [self._signal(facts) for facts in self.inspection.signals],
+            "notes": list(self.notes),
             "faults": [fault.as_json() for fault in self.inspection.faults],
             "excitation": self.excitation.as_json(),
         }
@@ -73,13 +78,15 @@ def overview(
     signals, limits = Progress.to(progress).split(1, 19)
     signals.at(0.0, "signals")
     inspection = inspect_recordings(arm, recordings, settings)
-    excitation = estimate_excitation(arm, recordings, limits.at, settings)
-    return Overview(arm, tuple(recordings), inspection, excitation)
+    reduced, dataset = prepare(arm, recordings, settings)
+    notes, _ = preflight(dataset)
+    return Overview(arm, tuple(recordings), inspection, excitation_of(reduced, dataset, limits), tuple(notes))
 
 
 def stated_noise(arm: Arm, signal: str) -> float | None:
     """Look up the noise of a signal's readings that an arm file states, in the signal's unit; None where it states none."""
-    noise = reading_noise(arm.sensors[signal]) if signal in arm.sensors else 0.0
+    stated = signal in arm.sensors and signal not in arm.auto_noise
+    noise = reading_noise(arm.sensors[signal]) if stated else 0.0
     return noise if noise > 0.0 else None
 
 
