@@ -700,11 +700,11 @@ class Explaining:
 
 #: Origins of the numbers of `MotionFaults`.
 SOUND_RUNS = (
-    "no alarm on 236 sound recordings (66 machines of seed 5, practice, CU Boulder, EMPS) and 350 simulated ones of seven arms "
+    "no alarm on 236 sound recordings (66 machines of seed 5, practice, CU Boulder, EMPS) and 280 simulated ones of seven arms "
     "with constants 30 % off and effects; no sweep recorded"
 )
 FAULTY_RUNS = (
-    "490 simulated recordings of seven arms with a fault at random, 487 found with their size within 2 %; no sweep recorded"
+    "300 simulated recordings of seven arms with a fault at random, 298 found with their size within 2 %; no sweep recorded"
 )
 
 
@@ -816,10 +816,16 @@ class MotionFaults:
     )
     spreads: float = tuned(3.0, "Spreads of the constants' priors beyond which a factor is none of theirs.", "a convention")
     command_factors: tuple[float, ...] = tuned(
-        (0.1, 0.3, 3.0, 10.0), "Factors of the command from which it is searched, after that of the signals.", FAULTY_RUNS
+        (0.3, 3.0, 0.1, 10.0, 1000.0, 0.001),
+        "Factors of the command from which it is searched, after that of the signals.",
+        FAULTY_RUNS,
     )
     command_steps: int = tuned(8, "Steps in which a factor of the command is refined.", FAULTY_RUNS)
-    command_close: float = tuned(0.002, "Logarithm of a gain that ends the steps.", "a tenth of 2 %")
+    command_close: float = tuned(0.002, "Logarithm of the middle gain that ends the steps.", "a tenth of 2 %")
+    largest_factor: float = tuned(
+        1e4, "Factors of the command beyond this, or below one over it, are none.", "ten times mA for A"
+    )
+    polishing_step: float = tuned(0.008, "First step of its logarithm from there to the best one.", FAULTY_RUNS)
     signal_steps: int = tuned(3, "Steps in which a factor of an only signal is refined.", FAULTY_RUNS)
     known_factor: float = tuned(0.02, "Logarithm of the ratio to a known number within which a factor is named by it.", "2 %")
 

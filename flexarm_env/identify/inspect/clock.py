@@ -32,9 +32,9 @@ def _hub_out_of_step(evidence: Evidence) -> list[Fault]:
 
 def _is_late(evidence: Evidence, signal: str) -> bool:
     """Whether a signal is like the model's at a lag, and much less so without."""
-    numbers, late, at_once = evidence.numbers, evidence.late[signal], evidence.at_once[signal]
-    gained = 1.0 - late.share < numbers.unexplained * (1.0 - at_once.share)
-    return gained and abs(late.lag) > numbers.least_lag and late.share > numbers.similar and late.is_within(numbers.plausible)
+    numbers, late = evidence.numbers, evidence.late[signal]
+    is_like = late.share > numbers.similar and late.is_within(numbers.plausible)
+    return is_like and abs(late.lag) > numbers.least_lag and evidence.is_like_model_later(signal)
 
 
 def _others_are_in_time(evidence: Evidence, signal: str) -> bool:

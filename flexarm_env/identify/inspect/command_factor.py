@@ -81,14 +81,33 @@ def _search(evidence: Evidence) -> float:
         for _ in range(numbers.command_steps):
             gain = _middle_gain(evidence.replayer.free_run(factor))
             if gain > 0.0 and abs(math.log(gain)) < numbers.command_close:
-                return factor
+                return _polished(evidence, factor)
             if gain > 0.0:
                 factor, moved = factor / gain, factor
             elif moved:
                 factor = math.sqrt(factor * moved)
             else:
                 break
+            if abs(math.log(factor)) > math.log(numbers.largest_factor):
+                break
     return 0.0
+
+
+def _polished(evidence: Evidence, factor: float) -> float:
+    """Move a factor to where the signals are explained best: friction makes the middle gain rough."""
+    best, explained, step = factor, _explained(evidence, factor), evidence.numbers.polishing_step
+    while step > evidence.numbers.command_close / 2:
+        tried = {other: _explained(evidence, other) for other in (best * (1.0 + step), best / (1.0 + step))}
+        better = max(tried, key=lambda other: tried[other])
+        if tried[better] > explained:
+            best, explained = better, tried[better]
+        else:
+            step *= 0.5
+    return best
+
+
+def _explained(evidence: Evidence, factor: float) -> float:
+    return sum(found.share for found in evidence.replayer.free_run(factor).at_once().values())
 
 
 def _middle_gain(run: FreeRun) -> float:

@@ -68,6 +68,11 @@ class Evidence:
         """Whether angle and speed are readings of one motion."""
         return self.hub is not None and self.hub.share > self.numbers.in_step
 
+    def is_like_model_later(self, signal: str) -> bool:
+        """Whether a signal runs with the model at a lag, and much more so than without."""
+        late, at_once = self.late[signal], self.at_once[signal]
+        return late.gain > 0.0 and 1.0 - late.share < self.numbers.unexplained * (1.0 - at_once.share)
+
     def others(self, signal: str) -> list[Agreement]:
         """List the agreements of all signals but one, without a lag."""
         return [found for other, found in self.at_once.items() if other != signal]

@@ -19,6 +19,8 @@ USUAL_UNITS = {
 }
 #: Edges that a decoder counts for each line of an encoder.
 QUADRATURE = 4
+#: Factors from here on are written without digits behind the point.
+LARGE = 100
 
 
 def factor_fault(evidence: Evidence, signal: str, value: float, rival: str = "", roughly: bool = False) -> Fault:
@@ -32,10 +34,10 @@ def factor_fault(evidence: Evidence, signal: str, value: float, rival: str = "",
         roughly: whether the model is wrong elsewhere, too, so that the value is no more than an estimate.
     """
     recording = evidence.recording
-    size = f"about {value:.2g}" if roughly else f"{value:.3g}"
+    size = f"about {_number(value)}" if roughly else _number(value)
     unit, number = ("", "") if roughly else _known(evidence, signal, value)
     size += f" = {number}" if number else ""
-    also = f" (or {rival} is {1.0 / value:.3g} of it: with one signal alone the two look alike)" if rival else ""
+    also = f" (or {rival} is {_number(1.0 / value)} of it: with one signal alone the two look alike)" if rival else ""
     entry = f'unit = "{unit}"' if unit else f"scale = {1.0 / value:.4g}"
     gain = ""
     if signal in evidence.signals and evidence.arm.parameter(f"sensors.{signal}.gain").spread and not unit:
@@ -51,6 +53,11 @@ def factor_fault(evidence: Evidence, signal: str, value: float, rival: str = "",
         hint=f"{signal} = {{ {entry} }}{gain}",
         other=rival,
     )
+
+
+def _number(value: float) -> str:
+    """Write a factor with three digits, and all digits before the point."""
+    return f"{value:.0f}" if abs(value) >= LARGE else f"{value:.3g}"
 
 
 def _known(evidence: Evidence, signal: str, value: float) -> tuple[str, str]:

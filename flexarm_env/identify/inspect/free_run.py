@@ -31,6 +31,7 @@ class FreeRun:
         cell: length of a cell [s].
         measured: (cells, signals) means, SI units; NaN where a signal has no value for long.
         modelled: (cells, signals) means of the model's readings.
+        integrals: (cells, signals) means of the measured signals' integrals over time.
         noise: (signals,) standard deviation of a cell's mean, as the arm states it.
         numbers: of the method.
     """
@@ -39,6 +40,7 @@ class FreeRun:
     cell: float
     measured: Floats
     modelled: Floats
+    integrals: Floats
     noise: Floats
     numbers: MotionFaults
 
@@ -63,9 +65,7 @@ class FreeRun:
         return agreement_late(*self._turned(gear_ratio, "arm_angle", "motor_speed"), self.cell, self.numbers)
 
     def _turned(self, gear_ratio: float, angle: str, speed: str) -> tuple[Floats, Floats]:
-        angles, speeds = (self.measured[:, self.signals.index(signal)] for signal in (angle, speed))
-        turned = np.cumsum(np.where(np.isfinite(speeds), speeds, 0.0)) - 0.5 * speeds
-        return angles, turned * (self.cell / gear_ratio)
+        return self.measured[:, self.signals.index(angle)], self.integrals[:, self.signals.index(speed)] / gear_ratio
 
     def leaves_noise(self, signal: str, found: Agreement) -> bool:
         """Whether an agreement leaves hardly more of a signal than its noise."""
@@ -97,9 +97,12 @@ class Replayer:
         numbers, run = dataset.settings.motion, dataset.runs[0]
         modelled = replay(self.plant, replace(run, command=run.command / command_factor), dataset)
         cell = max(dataset.interval, numbers.cell)
-        measured, modelled = (cell_means(run.time, values, cell, numbers.longest_gap) for values in (run.measured, modelled))
+        measured, means, integrals = (
+            cell_means(run.time, values, cell, numbers.longest_gap)
+            for values in (run.measured, modelled, _integrals(run.time, run.measured))
+        )
         noise = dataset.noise * math.sqrt(dataset.interval / cell)
-        return FreeRun(dataset.signals, cell, measured, modelled, noise, numbers)
+        return FreeRun(dataset.signals, cell, measured, means, integrals, noise, numbers)
 
 
 def replayer(arm: Arm, recording: Recording, settings: Settings) -> Replayer:
@@ -131,6 +134,17 @@ def _starts(dataset: Dataset) -> Iterator[Dataset]:
         yield replace(dataset, runs=(replace(run, start=start),), noise=others)
     rest = Start(0.0, 0.0, moving=False, vibrating=False, samples=run.start.samples)
     yield replace(dataset, runs=(replace(run, start=rest),))
+
+
+def _integrals(time: Floats, values: Floats) -> Floats:
+    """Integrate samples (samples, signals) over time before they are averaged, which would lose fast motion."""
+    integrals = np.full_like(values, np.nan)
+    for column, signal in enumerate(values.T):
+        known = np.isfinite(signal)
+        if known.any():
+            steps = 0.5 * np.diff(time[known]) * (signal[known][1:] + signal[known][:-1])
+            integrals[known, column] = np.concatenate([[0.0], np.cumsum(steps)])
+    return integrals
 
 
 def cell_means(time: Floats, values: Floats, cell: float, longest_gap: int) -> Floats:

@@ -12,7 +12,7 @@ def signs(evidence: Evidence) -> list[Fault]:
     if evidence.hub is not None and evidence.hub_in_step and evidence.hub.gain < 0.0:
         return [_fault(evidence, min(HUB, key=lambda signal: evidence.at_once[signal].gain), "")]
     shown = {signal: found.gain for signal, found in evidence.at_once.items() if found.share > least}
-    against = [signal for signal, gain in shown.items() if gain < 0.0]
+    against = [signal for signal, gain in shown.items() if gain < 0.0 and not evidence.is_like_model_later(signal)]
     if len(against) < len(shown):
         return [_fault(evidence, signal, "") for signal in against]
     if not against or len(shown) < len(evidence.signals):

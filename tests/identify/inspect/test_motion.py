@@ -198,3 +198,9 @@ def test_a_factor_is_found_beside_effects_that_the_model_lacks(practice, factor)
     # the play and the tachometer's lag of two machines change the ratio of speed and angle
     within = [abs(fault.value / factor - 1.0) < CLOSE for fault in found]
     assert sum(within) >= 24
+
+
+@pytest.mark.parametrize("offset", [0.006, 0.012, -0.01])
+def test_a_loop_that_an_offset_of_the_clock_makes_ring_is_no_fault(offset):
+    machine = Arm.load("thesis").with_effect("time_offset", offset=offset)
+    assert motion_faults(Arm.load("thesis"), [simulate(machine, "square", duration=6.0, seed=1)]) == []
