@@ -117,7 +117,8 @@ def _shift_note(name: str, shift: float, sample_time: float) -> str:
     rows = round(shift / sample_time)
     rest = shift - rows * sample_time
     left = f"; {1e3 * rest:.3g} ms of it are less than a row" if abs(rest) > 1e-6 * sample_time else ""
-    return f"'{name}' was moved by {abs(rows)} rows, {'back' if rows >= 0 else 'forward'} in time{left}"
+    count = f"{abs(rows)} row{'' if abs(rows) == 1 else 's'}"
+    return f"'{name}' was moved by {count}, {'back' if rows >= 0 else 'forward'} in time{left}"
 
 
 def _held(values: Floats, repeats: int) -> NDArray[np.bool_]:

@@ -58,6 +58,12 @@ class Dataset:
         """Choose the runs to replay: whole ones for the held-out part, which comes last; else the fitted part alone."""
         return self.runs if held_out else self.fitted
 
+    @functools.cached_property
+    def shares(self) -> Floats:
+        """Shares (signals,) of the samples in which each signal was measured."""
+        there = np.concatenate([~np.isnan(run.measured) for run in self.runs])
+        return np.maximum(there.sum(axis=0), 1) / len(there)
+
     def readings(self, held_out: bool) -> int:
         """Count the readings of the held-out or the fitted part."""
         return sum(run.readings(~run.train if held_out else run.train) for run in self.runs)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.replay.dataset import Dataset
-from flexarm_env.identify.replay.observer import innovation_sigma, observer_gains
+from flexarm_env.identify.replay.observer import innovation_sigma, innovation_sigmas, observer_gains
 from flexarm_env.identify.replay.readings import bounded
 from flexarm_env.identify.replay.replay import replay, whole_replay, window_observers, window_replay
 from flexarm_env.identify.settings import LEAST_EXCESS
@@ -139,7 +139,10 @@ class InnovationErrors:
         for run in dataset.runs:
             rows = ~run.train if held_out else run.train
             plant = plants[run.payload]
-            corrected = run.errors(replay(plant, run, dataset, gains[run.payload]), sigmas[run.payload])
+            sigma = sigmas[run.payload]
+            if run.readings() < run.measured.size:
+                sigma = innovation_sigmas(plant, run, dataset, own, gains[run.payload])
+            corrected = run.errors(replay(plant, run, dataset, gains[run.payload]), sigma)
             free = run.errors(replay(plant, run, dataset), dataset.noise)
             totals += [_squares(errors[rows]) for errors in (corrected, free)]
         innovations, free_run = np.sqrt(totals / dataset.readings(held_out))

@@ -28,6 +28,7 @@ class Start:
         moving: true if the hub moves, so that angle and speed are fitted as well.
         vibrating: true if the beam vibrates.
         samples: length of the stretch to which the state is fitted.
+        rest: angle of the hub [rad] if it was at rest after all.
     """
 
     angle: float
@@ -35,6 +36,7 @@ class Start:
     moving: bool
     vibrating: bool
     samples: int
+    rest: float
 
 
 def find_start(time: Floats, measured: Floats, signals: list[str], noise: Floats, settings: InitialStates) -> Start:
@@ -50,14 +52,24 @@ def find_start(time: Floats, measured: Floats, signals: list[str], noise: Floats
     begins = np.argmax(~np.isnan(measured), axis=0)
     early = time[begins] <= settings.held_time
     if early.all():
-        return _start(time, measured, signals, noise, settings)
-    known = [signal for signal, is_early in zip(signals, early, strict=True) if is_early]
-    found = _start(time, measured[:, early], known, noise[early], settings)
-    if "arm_angle" in known or "arm_angle" not in signals:
-        return found
-    first = time[begins[signals.index("arm_angle")]]
-    samples = int(np.searchsorted(time, first + settings.longest_moving))
-    return replace(found, moving=True, samples=max(found.samples, samples))
+        found = _start(time, measured, signals, noise, settings)
+    else:
+        known = [signal for signal, is_early in zip(signals, early, strict=True) if is_early]
+        found = _start(time, measured[:, early], known, noise[early], settings)
+    first = begins[[i for i, signal in enumerate(signals) if signal in ("arm_angle", "motor_speed")]].max(initial=0)
+    if found.moving and first > 0:  # it may have left since the first sample
+        found = replace(found, rest=_angle_at_rest(measured[:1], signals, noise, settings))
+    if "arm_angle" in signals and not early[signals.index("arm_angle")]:
+        samples = int(np.searchsorted(time, time[begins[signals.index("arm_angle")]] + settings.longest_moving))
+        return replace(found, moving=True, samples=max(found.samples, samples))
+    return found
+
+
+def _angle_at_rest(measured: Floats, signals: list[str], noise: Floats, settings: InitialStates) -> float:
+    """Estimate the angle of a hub at rest from the first sample (1, signals): 0 where it allows it."""
+    column = signals.index("arm_angle") if "arm_angle" in signals else 0
+    angle = float(measured[0, column])
+    return angle if "arm_angle" in signals and abs(angle) >= settings.at_zero * noise[column] else 0.0
 
 
 def _start(time: Floats, measured: Floats, signals: list[str], noise: Floats, settings: InitialStates) -> Start:
@@ -74,7 +86,7 @@ def _start(time: Floats, measured: Floats, signals: list[str], noise: Floats, se
         vibrating = bool(np.any((np.abs(first) > settings.significant * noise)[beam]))
     longest = max(int((settings.longest_held if held else settings.longest_moving) / interval), settings.fewest)
     samples = min(longest, still) if held else min(longest, len(time))
-    return Start(angle, speed, moving, vibrating, samples)
+    return Start(angle, speed, moving, vibrating, samples, angle)
 
 
 def _hub(time: Floats, measured: Floats, signals: list[str], noise: Floats, settings: InitialStates) -> tuple[float, float, int]:
@@ -180,7 +192,7 @@ class Stretch:
                 faster = np.concatenate(modes[1:])
                 weights = np.array([0.0] * len(basis) + [1.0 / (self.settings.faster_modes * least)] * len(faster))
                 fitted, _ = self._fit(plant, fitted, np.array([*basis, *faster]), weights)
-            state = self._likelier(plant, start.angle * hub[0], fitted)
+            state = self._likelier(plant, start.rest * hub[0], fitted)
         plant.place(state, self.command_before)
 
     def _residual(self, plant: Plant, state: Floats) -> Floats:
