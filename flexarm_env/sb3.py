@@ -68,6 +68,7 @@ class FlexArmVecEnv(VecEnv):
     def __init__(self, envs: FlexArmVectorEnv) -> None:
         self.envs = envs
         super().__init__(envs.num_envs, envs.single_observation_space, envs.single_action_space)
+        self.metadata |= {"render_fps": envs.metadata["render_fps"]}
         self.returns = np.zeros(envs.num_envs)
         self.began = time.perf_counter()
         self.actions: Array = np.zeros((envs.num_envs, 1))

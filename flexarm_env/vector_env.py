@@ -139,7 +139,13 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         return self.batch.observations.copy(), self._info(self.all)
 
     def state(self) -> State:
-        """Copy everything on which the next steps depend; `state().physical` has the [q, q̇, extra] of each arm."""
+        """Copy everything on which the next steps depend; `state().physical` has the [q, q̇, extra] of each arm.
+
+        Raises:
+            gymnasium.error.ResetNeeded: before the first reset.
+        """
+        if not self.started:
+            raise gym.error.ResetNeeded("state before reset: call envs.reset() first")
         return self.batch.state()
 
     def set_state(self, state: Any) -> None:

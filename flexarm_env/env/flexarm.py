@@ -151,7 +151,13 @@ class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
         return batch.first_observation.copy(), outcome[REWARD], outcome[TERMINATED] > 0.0, truncated, batch.info_of(outcome)
 
     def state(self) -> State:
-        """Copy everything on which the next steps depend; `state().physical` is the machine's [q, q̇, extra] (states,)."""
+        """Copy everything on which the next steps depend; `state().physical` is the machine's [q, q̇, extra] (states,).
+
+        Raises:
+            gymnasium.error.ResetNeeded: before the first reset.
+        """
+        if not self.started:
+            raise gym.error.ResetNeeded("state before reset: call env.reset() first")
         state = self.batch.state()
         return replace(state, physical=state.physical[0])
 

@@ -187,6 +187,7 @@ def test_arms_are_drawn_beside_each_other(tmp_path: Path) -> None:
     vec.reset()
     each = vec.get_images()
     assert len(each) == 4
+    assert vec.metadata["render_fps"] == 200  # for VecVideoRecorder
     assert vec.render().shape == (2 * each[0].shape[0], 2 * each[0].shape[1], 3)
     assert make_vec("FlexArm/Slew-v0", 2).get_images() == [None, None]
 

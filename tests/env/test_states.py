@@ -84,6 +84,12 @@ def test_a_state_of_another_environment_is_refused(arguments: dict, words: str) 
         env.set_state(np.zeros(8))
 
 
+def test_there_is_no_state_before_the_first_reset() -> None:
+    for env in (make(), gym.make_vec("FlexArm/Slew-v0", 2, **NATIVE).unwrapped):
+        with pytest.raises(gym.error.ResetNeeded, match="state before reset"):
+            env.state()
+
+
 def test_a_state_of_other_arms_is_refused() -> None:
     three, two = (gym.make_vec("FlexArm/Slew-v0", n, **NATIVE).unwrapped for n in (3, 2))
     three.reset(seed=0)
