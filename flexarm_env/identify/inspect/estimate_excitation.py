@@ -157,12 +157,13 @@ def _along_common_scale(base: Baseline) -> tuple[Floats, Floats]:
 
 
 def _rise_against(arm: Arm, dataset: Dataset) -> Rise:
-    """Measure how far an effect drives the readings in windows from those of the arm without it."""
+    """Measure how far an effect drives the readings in windows from those of the arm without it, where they were measured."""
     without = error_measure(arm).brief_readings(arm, dataset)
+    measured = np.concatenate([np.isfinite(run.measured[~run.train]) for run in dataset.runs])
 
     def rise_of(changed: Arm) -> float:
         pairs = zip(error_measure(changed).brief_readings(changed, dataset), without, strict=True)
-        change = np.concatenate([(one - other).ravel() for one, other in pairs])
+        change = np.concatenate([one - other for one, other in pairs])[measured]
         return float(np.mean(np.nan_to_num(change, nan=FAILED_ERROR, posinf=FAILED_ERROR, neginf=FAILED_ERROR) ** 2))
 
     return rise_of

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexarm_env.arm import Arm
+from flexarm_env.identify.calibrate.objective import ObserverBank
 from flexarm_env.identify.select.signatures import Baseline
 from flexarm_env.identify.select.starts import candidates, sized, starts_of
 from flexarm_env.identify.settings import DetectionLimits
@@ -64,9 +65,13 @@ class EffectSize:
         return self.base.objective.dataset.settings.detection
 
     def change(self) -> tuple[float, float]:
-        """Compute the variance by which the effect changes the innovations, and that which constants cannot take over."""
-        change = self.base.change(self.name, self.values)
-        left, count = self.base.unexplained(change), self.base.objective.dataset.readings(held_out=False)
+        """Compute the variance by which the effect changes the innovations, and that which constants cannot take over.
+
+        Each size has observers of its own: those of a large effect would change the innovations of a small one.
+        """
+        objective = replace(self.base.objective, observers=ObserverBank())
+        change = objective.residual_of(self.arm) - self.base.residual
+        left, count = self.base.unexplained(change), objective.dataset.readings(held_out=False)
         return float(np.sum(change**2) / count), float(np.sum(left**2) / count)
 
     def stepped(self, wanted: float, rise: float) -> EffectSize:
@@ -146,17 +151,12 @@ def _by_innovations(size: EffectSize, wanted: float) -> tuple[EffectSize, float]
 
 
 def _by_windows(size: EffectSize, wanted: float, share: float, rise_of: Rise) -> EffectSize | None:
-    """Correct a size by the rise of the error in windows, until a correction is small; None where it never rises.
-
-    A size below which the error no longer falls is kept: what is left are differences of the observers.
-    """
-    before, last, rises, close = size, math.inf, False, size.numbers.close
+    """Correct a size by the rise of the error in windows, until a correction is small; None where it never rises."""
+    rises, close = False, size.numbers.close
     for _ in range(size.numbers.window_steps):
         rise = rise_of(size.arm)
-        if size.multiple < before.multiple and rise > size.numbers.stays * last:
-            return before
         rises = rises or rise > 0.0
-        before, last, size = size, rise, size.stepped(wanted, share * rise)
+        before, size = size, size.stepped(wanted, share * rise)
         if size.factor_from(before) < (close if size.is_bracketed else math.log(size.numbers.step_up) - close):
             break
     return size if rises else None
