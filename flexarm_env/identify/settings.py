@@ -24,6 +24,8 @@ FAILED_ERROR = 1e6
 LEAST_EXCESS = LEAST_COMMAND = 1e-9
 #: Largest logarithm of a value over its origin, so that the exponential stays finite.
 LARGEST_LOG = 20.0
+#: Smallest frequency [Hz] that divides: of an arm that does not vibrate.
+LEAST_FREQUENCY = 1e-9
 #: Smallest norm that divides.
 LEAST_NORM = 1e-300
 
@@ -186,28 +188,19 @@ class Thinning:
         "Longest step over the shortest time constant of the arm's sensors and drive.",
         "two samples in each time constant, as for the longest step and typical lags of 10 ms",
     )
-    samples_per_period: float = tuned(
-        20.0,
-        "Samples in a period of the fastest vibration that rises above the noise.",
-        "the mean of a command over a step then excites it by 0.4 % less than the command itself: 1 - sinc(1/20)",
+    share_of_period: float = tuned(
+        0.05,
+        "Longest step over the period of the fastest of the `slowest` vibrations.",
+        "20 samples in a period; keeps the 500 Hz of the arms `thesis` (29.6 Hz) and `thesis-fem` (20.2 Hz)",
     )
-    seen: float = tuned(
-        20.0,
-        "Power of a signal in a window over that of its noise at which a vibration counts.",
-        "white noise exceeds it once in 5e8 bins; `thesis` under square waves of 2 s shows its second vibration at 45",
-    )
-    always_seen: int = tuned(
+    slowest: int = tuned(
         2,
-        "Slowest vibrations of the free and of the held hub that count, seen or not.",
-        "a recording of `thesis` in which nothing moves, at 500 Hz, keeps its samples",
+        "Slowest vibrations of the free and of the held hub that count.",
+        "recordings of the thesis's arms show two by far above the noise; of faster ones, the response to the command counts",
     )
-    band: float = tuned(
-        1.33, "Ratio to an eigenfrequency within which power counts as its own.", "constants of practice machines are off by 30 %"
-    )
-    spectrum_samples: int = tuned(256, "Length of the windows.", "half a second at 500 Hz: vibrations decay", "samples")
-    displacement: float = tuned(
+    command_error: float = tuned(
         0.2,
-        "Displacement of the free and rigid arm by the mean command, rms over the noise of its angle, that is left.",
+        "Error that the mean command makes in a signal, rms over its noise in windows, that is left.",
         "raises an error of 1 to 1.02, a fifth of what counts as nothing left (`errors.nothing_left`)",
     )
     fewest_samples: int = tuned(

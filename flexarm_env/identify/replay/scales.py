@@ -28,10 +28,10 @@ def _slowing_torque(arm: Arm, runs: Sequence[Run]) -> float:
     if "motor_speed" not in arm.signals:
         return 0.0
     tach, ratio = arm.signals.index("motor_speed"), arm.constants["drive"]["gear_ratio"]
-    return float(inertia_of(arm) / ratio * max(run.extent[tach] / run.time[-1] for run in runs))
+    return float(_inertia(arm) / ratio * max(run.extent[tach] / run.time[-1] for run in runs))
 
 
-def inertia_of(arm: Arm) -> float:
+def _inertia(arm: Arm) -> float:
     """Compute an arm's inertia at the hub, unbent, motor included [kg m²]."""
     structure = arm.structure()
     bodies = 2 if structure.separate_motor else 1
@@ -48,7 +48,7 @@ def scales_of(arm: Arm, runs: Sequence[Run], signals: Sequence[str], reference: 
         rates = [run.extent[column] / np.sqrt(run.time[-1]) for run in runs]
         speed = max(float(max(rates)), reference.least_speed) / reference.speed
     angle = max(angle, reference.least_ratio)
-    length, inertia = arm.structure().length or 1.0, inertia_of(arm) / reference.inertia
+    length, inertia = arm.structure().length or 1.0, _inertia(arm) / reference.inertia
     return _signal_scales(runs, signals) | {
         "N*m": torque,
         "N*m*s": torque / speed,
