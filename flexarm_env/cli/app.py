@@ -138,7 +138,7 @@ def diagnose(
     if report is not None:
         made = given.command_line("diagnose", seed, rate) | provenance("diagnose", arm, runs, seed)
         identification.write_page(report, runs, identification.compare(result.nominal, runs, rate), result, made)
-    if result.verdict in ("unknown", "insufficient_data", "recordings"):
+    if result.verdict in ("partly", "unknown", "insufficient_data", "recordings"):
         raise typer.Exit(1)
 
 

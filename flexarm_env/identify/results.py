@@ -12,11 +12,15 @@ from flexarm_env.arm import Arm
 from flexarm_env.display import Shown
 from flexarm_env.experiments.next_run import NextRun
 from flexarm_env.identify.calibrate.estimate import Estimate
+from flexarm_env.identify.explain.budget import Budget
 from flexarm_env.identify.explain.detection_limits import DetectionLimit
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.settings import SETTINGS, Settings
 
 Floats = NDArray[np.float64]
+
+#: Verdicts that name effects.
+NAMING = ("effects", "partly")
 
 
 @dataclass(frozen=True)
@@ -93,12 +97,13 @@ class Diagnosis(Shown):
     """The diagnosis of an arm, and the corrected arm.
 
     Attributes:
-        verdict: "nothing_missing", "parameters", "effects", "unknown", "recordings" or "insufficient_data".
+        verdict: "nothing_missing", "parameters", "effects", "partly" (effects are named, and more than the noise is left),
+            "unknown", "recordings" or "insufficient_data".
         effects: those accepted, in the order of their weight.
         equivalent: for each accepted effect, all that these data cannot tell from it, itself first.
         ranking: candidates by gain.
-        error: "nominal", "refitted", "final", and one entry after each accepted effect under its name; rms over noise, held
-            out, windows of 1 s.
+        error: "nominal", "refitted", "final", and one entry after each accepted effect under its name, of the model that has it
+            and those before it; rms over noise, held out, windows of 1 s.
         free_run: the same, replayed once from the start.
         closed_loop: the same in closed loop, where the recordings were made in a known one; else empty.
         constants: all fitted values of the final arm by short name.
@@ -113,6 +118,7 @@ class Diagnosis(Shown):
         settings: numbers of the method.
         seconds: time taken.
         seed: recorded with the result.
+        budget: shares of the excess of `error` that constants, each effect and nothing explain, in total and by signal.
     """
 
     verdict: str
@@ -134,6 +140,7 @@ class Diagnosis(Shown):
     trace: list[dict[str, Any]] = field(default_factory=list)
     settings: Settings = SETTINGS
     closed_loop: dict[str, float] = field(default_factory=dict)
+    budget: Budget = field(default_factory=Budget)
 
     def as_json(self) -> dict[str, Any]:
         """Convert to plain data for `--json`."""
@@ -151,6 +158,7 @@ class Diagnosis(Shown):
                 }
                 for c in self.ranking
             ],
+            "budget": self.budget.as_json(),
             "error": self.error,
             "free_run": self.free_run,
             "closed_loop": self.closed_loop,

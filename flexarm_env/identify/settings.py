@@ -608,6 +608,9 @@ class Selecting:
         0.03, "Effects are equivalent if what they leave differs by less than this share of what they remove."
     )
     same_excess: float = tuned(0.1, "And by less than one of them leaves, or this excess, whichever is more.")
+    noticed: float = tuned(
+        0.1, "The error of a signal that moves by more than this share is noticed: an effect touches it, or makes it worse."
+    )
     refit_needed: float = tuned(1.5, "Constants were wrong if the nominal excess is this multiple of the refitted one.")
 
 

@@ -172,9 +172,16 @@ def diagnosis(result: Diagnosis) -> list[RenderableType]:
         Text(words.verdict(result), style="bold"),
         *_ranking(result),
         steps(words.steps_of(result.error, result.effects), free, _closed(result.closed_loop, result.effects)),
+        *_budget(result),
         *estimates("Constants", constants),
         *_notes([*result.notes, *([f"to settle what is open, {result.next_run.why}"] if result.next_run else [])]),
     ]
+
+
+def _budget(result: Diagnosis) -> list[RenderableType]:
+    """Make the table of the error budget, in total and by signal."""
+    rows, columns = words.budget_rows(result.budget), words.budget_columns(result.budget)
+    return [table("Shares of the excess error (error² − 1) of the arm as given, held out", columns, rows)] if rows else []
 
 
 def faults(found: Sequence[Fault]) -> Table:
@@ -214,7 +221,7 @@ def addition(result: Addition) -> list[RenderableType]:
 def fit(result: Fit) -> list[RenderableType]:
     """Show the error and the constants after a refit."""
     return [
-        Text(f"Refitted, the held-out error goes {words.arrows(result.error)} × the noise.", style="bold"),
+        Text(f"Refitted, the held-out error {words.change(result.error)}.", style="bold"),
         steps(words.steps_of(result.error), words.steps_of(result.free_run), _closed(result.closed_loop)),
         *estimates("Constants", result.estimates),
         *_notes(result.notes),

@@ -68,6 +68,11 @@ class Dataset:
         """Count the readings of the held-out or the fitted part."""
         return sum(run.readings(~run.train if held_out else run.train) for run in self.runs)
 
+    def readings_by_signal(self, held_out: bool) -> NDArray[np.int64]:
+        """Count the readings (signals,) of the held-out or the fitted part."""
+        parts = [run.measured[~run.train if held_out else run.train] for run in self.runs]
+        return np.sum([np.count_nonzero(~np.isnan(part), axis=0) for part in parts], axis=0)
+
     @property
     def has_loop(self) -> bool:
         """Whether any run is replayed in closed loop."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -27,6 +27,24 @@ def excess(error: float) -> float:
 
 
 @dataclass(frozen=True)
+class SignalError:
+    """Error of one signal in windows.
+
+    Attributes:
+        over_noise: rms over noise: 1 is perfect.
+        rms: the same in the signal's SI unit.
+    """
+
+    over_noise: float
+    rms: float
+
+    @property
+    def excess(self) -> float:
+        """Excess over the noise, as a variance."""
+        return excess(self.over_noise)
+
+
+@dataclass(frozen=True)
 class Score:
     """Errors of an arm on one part of the data, rms over noise: 1 is perfect.
 
@@ -35,11 +53,14 @@ class Score:
             standard deviation under both noises, since such a disturbance drives any free replay away within a window.
         free_run: each recording replayed once from its start under the recorded command.
         closed_loop: the same under the control law, where recordings were made in a known loop; None where there is none.
+        signals: the errors in windows by signal, of those with a reading. Their squares, weighted by the number of readings,
+            average to that of `windows`.
     """
 
     windows: float
     free_run: float
     closed_loop: float | None = None
+    signals: Mapping[str, SignalError] = field(default_factory=dict, hash=False)
 
     @property
     def whole_run(self) -> float:
@@ -93,14 +114,17 @@ class WindowErrors:
         """Measure the errors of an arm on the held-out or the fitted part."""
         plants = dataset.plants(arm)
         observers = {payload: window_observers(arm, plant, dataset) for payload, plant in plants.items()}
-        totals = np.zeros(2)
+        totals, parts = np.zeros(2), []
         for run in dataset.runs_to_replay(held_out):
             rows = ~run.train if held_out else run.train
             plant, first = plants[run.payload], int(np.argmax(rows))
             windows = window_replay(plant, run, dataset, observers[run.payload], first)
-            totals += [_squares(run.errors(y, dataset.noise)[rows]) for y in (windows, replay(plant, run, dataset))]
+            both = [run.errors(y, dataset.noise)[rows] for y in (windows, replay(plant, run, dataset))]
+            totals += [_squares(errors) for errors in both]
+            parts.append((both[0], dataset.noise))
         windows, free = np.sqrt(totals / dataset.readings(held_out))
-        return Score(float(windows), float(free), _closed_loop_error(plants, dataset, held_out))
+        closed = _closed_loop_error(plants, dataset, held_out)
+        return Score(float(windows), float(free), closed, _by_signal(parts, dataset, held_out))
 
     def brief(self, arm: Arm, dataset: Dataset) -> float:
         """Measure the held-out error in windows, from states that two corrected replays estimate."""
@@ -135,7 +159,7 @@ class InnovationErrors:
         own = arm.constants["drive"]["torque_noise"]
         gains = {payload: observer_gains(arm, plant, dataset, own) for payload, plant in plants.items()}
         sigmas = {payload: innovation_sigma(plant, dataset, own) for payload, plant in plants.items()}
-        totals = np.zeros(2)
+        totals, parts = np.zeros(2), []
         for run in dataset.runs:
             rows = ~run.train if held_out else run.train
             plant = plants[run.payload]
@@ -145,8 +169,10 @@ class InnovationErrors:
             corrected = run.errors(replay(plant, run, dataset, gains[run.payload]), sigma)
             free = run.errors(replay(plant, run, dataset), dataset.noise)
             totals += [_squares(errors[rows]) for errors in (corrected, free)]
+            parts.append((corrected[rows], sigmas[run.payload]))
         innovations, free_run = np.sqrt(totals / dataset.readings(held_out))
-        return Score(float(innovations), float(free_run), _closed_loop_error(plants, dataset, held_out))
+        closed = _closed_loop_error(plants, dataset, held_out)
+        return Score(float(innovations), float(free_run), closed, _by_signal(parts, dataset, held_out))
 
     def brief(self, arm: Arm, dataset: Dataset) -> float:
         """Measure the held-out innovations."""
@@ -195,6 +221,17 @@ def _closed_loop_error(plants: Mapping[float, Plant], dataset: Dataset, held_out
         rows = ~run.train if held_out else run.train
         total += _squares(run.errors(whole_replay(plants[run.payload], run, dataset), dataset.noise)[rows])
     return float(np.sqrt(total / dataset.readings(held_out)))
+
+
+def _by_signal(parts: Sequence[tuple[Floats, Floats]], dataset: Dataset, held_out: bool) -> dict[str, SignalError]:
+    """Compute the rms of errors (rows, signals) over their deviation (signals,), of all runs, by signal."""
+    sums = [(np.sum(bounded(errors) ** 2, axis=0), sigma) for errors, sigma in parts]
+    counts = dataset.readings_by_signal(held_out)
+    some = np.maximum(counts, 1)
+    over_noise = np.sqrt(np.sum([squares for squares, _ in sums], axis=0) / some)
+    rms = np.sqrt(np.sum([squares * sigma**2 for squares, sigma in sums], axis=0) / some)
+    rows = zip(dataset.signals, counts, over_noise, rms, strict=True)
+    return {signal: SignalError(float(error), float(size)) for signal, count, error, size in rows if count}
 
 
 def _squares(errors: Floats) -> float:

@@ -125,6 +125,20 @@ class ThresholdCriteria:
             pairs.append((self.refitted.whole_run, score.whole_run, errors.free_run_explained, shares.least_total_gain))
         return all(new <= enough or excess(new) <= (1.0 - least) * excess(old) for old, new, enough, least in pairs)
 
+    def explains_most(self, score: Score) -> bool:
+        """Whether effects remove most of the excess, in windows and in whole runs alike, though more than the noise is left."""
+        pairs = [(self.refitted.excess, score.excess)]
+        if self.judges_whole_run:
+            pairs.append((self.refitted.whole_run_excess, score.whole_run_excess))
+        return all(left <= (1.0 - self.settings.selecting.least_total_gain) * before for before, left in pairs)
+
+    def leaves_only_noise(self, score: Score) -> bool:
+        """Whether windows end at the noise, in all signals together and near it in each that the effects touch."""
+        errors, noticed = self.settings.errors, self.settings.selecting.noticed
+        pairs = [(self.refitted.signals[signal].over_noise, one.over_noise) for signal, one in score.signals.items()]
+        touched = [after for before, after in pairs if abs(after - before) > noticed * before]
+        return score.windows <= errors.explained and all(after <= errors.close for after in touched)
+
     def is_fully_explained(self, found: Model) -> bool:
         """Whether a model explains the data and leaves hardly more than noise: an imitation does not."""
         score, errors, shares = found.score, self.settings.errors, self.settings.selecting
@@ -188,9 +202,11 @@ class ThresholdCriteria:
         return left + self.equivalent_difference(measure(self.refitted) - left, left)
 
     def verdict(self, accepted: Sequence[str], found: Model) -> str:
-        """Name effects that explain the data; else say whether the constants do."""
-        if accepted and self.explains(found):
+        """Name effects that explain the data or most of them; else say whether the constants do."""
+        if accepted and self.explains(found) and self.leaves_only_noise(found.score):
             return "effects"
+        if accepted and (self.explains(found) or self.explains_most(found.score)):
+            return "partly"
         if self.refitted.windows > self.settings.errors.explained:
             return "unknown"
         wrong = self.nominal.excess > self.settings.selecting.refit_needed * self.refitted.excess
