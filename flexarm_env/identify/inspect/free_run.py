@@ -132,7 +132,7 @@ def _starts(dataset: Dataset) -> Iterator[Dataset]:
         others = np.full_like(dataset.noise, np.inf)
         others[column] = dataset.noise[column]
         yield replace(dataset, runs=(replace(run, start=start),), noise=others)
-    rest = Start(0.0, 0.0, moving=False, vibrating=False, samples=run.start.samples)
+    rest = Start(0.0, 0.0, moving=False, vibrating=False, samples=run.start.samples, rest=0.0)
     yield replace(dataset, runs=(replace(run, start=rest),))
 
 
