@@ -13,14 +13,12 @@ from flexarm_env.recordings.recording import Recording
 
 
 def constant(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
-    """Find signals whose readings are all equal, though their noise is not below their step or another signal moves."""
+    """Find signals whose readings are all equal, though another signal moves; where none does, the recordings are too poor."""
     series = {signal: Series.of(recording, signal, numbers) for signal in recording.signals}
     still = [signal for signal, one in series.items() if len(one) and not np.ptp(one.values)]
     moves = any(np.ptp(one.values) > numbers.moves * one.noise for signal, one in series.items() if signal not in still)
     found = []
-    for signal in still:
-        sensor = arm.sensors.get(signal, {"noise": 0.0, "resolution": 0.0})
-        if moves or sensor["noise"] > sensor["resolution"]:
-            value = float(series[signal].values[0])
-            found.append(fault(recording, signal, "constant", value, f"never moves: it is {shown(signal, value)} in every row"))
+    for signal in still if moves else ():
+        value = float(series[signal].values[0])
+        found.append(fault(recording, signal, "constant", value, f"never moves: it is {shown(signal, value)} in every row"))
     return found

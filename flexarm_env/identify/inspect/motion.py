@@ -47,6 +47,8 @@ def motion_faults(arm: Arm, recordings: Sequence[Recording], settings: Settings 
     """
     found = []
     for recording in recordings:
+        if not set(recording.signals) & set(arm.signals):  # the readings of all were at fault
+            continue
         evidence = gather(arm, recording, settings)
         found += next((faults for kind in KINDS if (faults := kind(evidence))), [])
     return found
