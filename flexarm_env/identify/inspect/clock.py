@@ -34,12 +34,15 @@ def _is_late(evidence: Evidence, signal: str) -> bool:
     """Whether a signal is like the model's at a lag, and much less so without."""
     numbers, late = evidence.numbers, evidence.late[signal]
     is_like = late.share > numbers.similar and late.is_within(numbers.plausible)
-    return is_like and abs(late.lag) > numbers.least_lag and evidence.is_like_model_later(signal)
+    least = numbers.least_lag if evidence.run.leaves_noise(signal, late) else numbers.sure_lag
+    return is_like and abs(late.lag) > least and evidence.is_like_model_later(signal)
 
 
 def _others_are_in_time(evidence: Evidence, signal: str) -> bool:
-    """Whether a signal of the hub beside one is like the model's without a lag."""
+    """Whether a signal beside one is like the model's without a lag, and it is late against the hub's other signal."""
     numbers = evidence.numbers
+    if signal in HUB and evidence.hub is not None and evidence.hub.share > numbers.same_shape:
+        return False
     beside = [other for name, other in evidence.late.items() if name != signal]
     return any(other.share > numbers.similar and abs(other.lag) < numbers.same_lag for other in beside)
 

@@ -35,12 +35,12 @@ def factor_fault(evidence: Evidence, signal: str, value: float, rival: str = "",
     """
     recording = evidence.recording
     size = f"about {_number(value)}" if roughly else _number(value)
-    unit, number = ("", "") if roughly else _known(evidence, signal, value)
-    size += f" = {number}" if number else ""
+    unit, words, number = ("", "", value) if roughly else _known(evidence, signal, value)
+    size += f" = {words}" if words else ""
     also = f" (or {rival} is {_number(1.0 / value)} of it: with one signal alone the two look alike)" if rival else ""
-    entry = f'unit = "{unit}"' if unit else f"scale = {1.0 / value:.4g}"
+    entry = f'unit = "{unit}"' if unit else f"scale = {1.0 / number:.4g}"
     gain = ""
-    if signal in evidence.signals and evidence.arm.parameter(f"sensors.{signal}.gain").spread and not unit:
+    if signal in evidence.signals and evidence.arm.parameter(f"sensors.{signal}.gain").spread and not words:
         gain = f", or in the arm file [sensors.{signal}] gain = {value * evidence.arm.value(f'sensors.{signal}.gain'):.4g}"
     return Fault(
         recording=recording.name,
@@ -56,22 +56,23 @@ def factor_fault(evidence: Evidence, signal: str, value: float, rival: str = "",
 
 
 def _number(value: float) -> str:
-    """Write a factor with three digits, and all digits before the point."""
-    return f"{value:.0f}" if abs(value) >= LARGE else f"{value:.3g}"
+    """Write a factor with three digits, and without an exponent if it is large."""
+    rounded = f"{value:.3g}"
+    return f"{float(rounded):.0f}" if abs(value) >= LARGE else rounded
 
 
-def _known(evidence: Evidence, signal: str, value: float) -> tuple[str, str]:
-    """Look up the unit and the number in words that a factor equals; empty where there is none."""
+def _known(evidence: Evidence, signal: str, value: float) -> tuple[str, str, float]:
+    """Look up the unit that a factor stands for and the known number that it equals, in words and as a number, or itself."""
     close = evidence.numbers.known_factor
     unit = INPUTS.get(signal) or evidence.arm.sensor(signal).unit
     for other, words in USUAL_UNITS.get(unit, {}).items():
         if abs(math.log(value * unit_factor(other, unit))) < close:
-            return other, words
+            return other, words, 1.0 / unit_factor(other, unit)
     ratio = evidence.arm.constants["drive"]["gear_ratio"]
     sides = {"the gear ratio": ratio, "1/(gear ratio)": 1.0 / ratio}
     counts = {"4 (edges of an encoder for its lines)": QUADRATURE, "1/4 (lines of an encoder for its edges)": 1.0 / QUADRATURE}
     numbers = {"arm_angle": sides | counts, "motor_speed": sides}
     for words, number in numbers.get(signal, {}).items():
         if abs(math.log(value / number)) < close and abs(math.log(number)) > close:
-            return "", words
-    return "", ""
+            return "", words, number
+    return "", "", value

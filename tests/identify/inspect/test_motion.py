@@ -204,3 +204,10 @@ def test_a_factor_is_found_beside_effects_that_the_model_lacks(practice, factor)
 def test_a_loop_that_an_offset_of_the_clock_makes_ring_is_no_fault(offset):
     machine = Arm.load("thesis").with_effect("time_offset", offset=offset)
     assert motion_faults(Arm.load("thesis"), [simulate(machine, "square", duration=6.0, seed=1)]) == []
+
+
+@pytest.mark.parametrize("lag", [0.06, 0.12])
+def test_an_angle_that_is_a_little_late_is_found(lag):
+    fault = found_in("thesis", late(sound(experiment="pulse"), lag, ("arm_angle",)))
+    assert (fault.kind, fault.signal) == ("clock", "arm_angle")
+    assert fault.value == pytest.approx(lag, rel=CLOSE)
