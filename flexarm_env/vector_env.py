@@ -152,7 +152,7 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         """Go on from a state that this environment, or one with the same arguments, has returned.
 
         Raises:
-            InputError: for a state of another environment or arm, or what is none.
+            InputError: for a state of another environment or arm, or a value of another type.
         """
         self.batch.set_state(state)
         self.over = (self.batch.outcome[TERMINATED] > 0.0) | (self.batch.outcome[SAMPLE_COUNT] >= self.max_episode_steps)

@@ -121,7 +121,7 @@ class Batch:
         """Go on from the state of an equal batch.
 
         Raises:
-            InputError: for what is no such state.
+            InputError: for a state of another batch, or a value of another type.
         """
         self.restore(check_state(state, self.setup.origin, self.count).numbers)
 

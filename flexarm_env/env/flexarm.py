@@ -165,7 +165,7 @@ class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
         """Go on from a state that this environment, or one with the same arguments, has returned.
 
         Raises:
-            InputError: for a state of another environment or arm, or what is none.
+            InputError: for a state of another environment or arm, or a value of another type.
         """
         self.batch.set_state(state)
         self.started = True

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Step:
-    """What the infos of a step have in common.
+    """Common part of the infos of a step.
 
     Attributes:
         given: part of each info that stands in it from the start; not nothing, since some readers of dicts skip an empty one.
@@ -77,7 +77,7 @@ def _after_filling(name: str) -> Callable[..., Any]:
     return filled
 
 
-#: What reads or takes out all of a dictionary; a method of dict that is not here writes to one key.
+#: Methods that read all of a dictionary or take out of it; every other method of dict writes to one key.
 for _name in (
     "__iter__", "__len__", "__reversed__", "__eq__", "__ne__", "__repr__", "__or__", "__ror__", "__delitem__",
     "keys", "values", "items", "copy", "pop", "popitem", "setdefault", "clear",

@@ -1,4 +1,4 @@
-"""An environment goes back to a state bit for bit, and starts where it is told to."""
+"""An environment goes back to a state bit for bit, and starts at a given state and target."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def test_a_state_of_other_arms_is_refused() -> None:
         three.reset(options={"state": three.state(), "reset_mask": np.array([True, False, False])})
 
 
-def test_an_episode_starts_where_it_is_told_to() -> None:
+def test_an_episode_starts_at_a_given_state() -> None:
     env = make(physical=True)
     env.reset(seed=0)
     start = env.state().physical.copy()
