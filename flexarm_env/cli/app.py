@@ -138,7 +138,7 @@ def diagnose(
     if report is not None:
         made = given.command_line("diagnose", seed, rate) | provenance("diagnose", arm, runs, seed)
         identification.write_page(report, runs, identification.compare(result.nominal, runs, rate), result, made)
-    if result.verdict in ("unknown", "insufficient_data", "recordings"):
+    if result.verdict in ("partly", "unknown", "insufficient_data", "recordings"):
         raise typer.Exit(1)
 
 
@@ -232,6 +232,15 @@ def effects(
 
 
 @app.command()
+def envs(arm: ArmName = "thesis", json: Json = None) -> None:
+    """List the environments with an arm: task, observation, action, length of an episode."""
+    arguments.check(json)
+    from flexarm_env.cli import environments
+
+    environments.show(arm, json)
+
+
+@app.command()
 def demo(
     output: Annotated[Path, typer.Option(metavar="FOLDER", help="Where pictures, page and numbers go.")] = Path("results/demo"),
     seed: Seed = 0,
@@ -260,7 +269,8 @@ def thesis(
 @app.command()
 def lab(
     recordings: Annotated[
-        list[Path] | None, typer.Argument(metavar="[RECORDING…]", help="CSV or .mat files, or folders.", show_default=False)
+        list[Path] | None,
+        typer.Argument(metavar="[RECORDING…]", help="Recordings (.csv, .mat, …), or folders.", show_default=False),
     ] = None,
     arm: ArmName = "thesis-fem",
     columns: Columns = None,

@@ -43,7 +43,7 @@ def run_demo(output: Path, seed: int = 0, json: Path | None = None) -> bool:
     _heading(out, f"flexarm diagnose RECORDINGS --arm {ARM}", words.verdict(diagnosis))
     content: dict[str, Any] = {"compare": plain_data.of_comparison(before), "diagnose": diagnosis.as_json()}
     added, after = None, identification.compare(diagnosis.arm, recordings)
-    if diagnosis.verdict == "effects":
+    if diagnosis.effects:
         added = identification.add(diagnosis.effects[0], arm, recordings, seed)
         after = identification.compare(added.arm, recordings)
         _heading(out, f"flexarm add {added.effect} RECORDINGS --arm {ARM}", words.addition(added))

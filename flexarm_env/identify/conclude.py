@@ -10,12 +10,14 @@ from flexarm_env.experiments.next_run import propose
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.calibrate.intervals import estimates
+from flexarm_env.identify.explain.budget import Budget, budget, budget_notes, rest_notes
 from flexarm_env.identify.explain.detection_limits import detection_limits
+from flexarm_env.identify.explain.error_steps import ErrorStep, error_steps
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.origin import with_origin
-from flexarm_env.identify.replay.error_measure import Score
-from flexarm_env.identify.results import Candidate, Diagnosis
-from flexarm_env.identify.select.trace import Trace
+from flexarm_env.identify.replay.error_measure import Score, closed_loop_errors
+from flexarm_env.identify.results import NAMING, Candidate, Diagnosis
+from flexarm_env.identify.select.trace import Trace, Tried
 from flexarm_env.identify.settings import Settings
 from flexarm_env.recordings.recording import Recording
 
@@ -41,13 +43,14 @@ def conclude(
         seed: recorded with the result.
     """
     nominal, base = calibrator.nominal, trace.steps[0].model
-    model = trace.model if verdict == "effects" else base
-    accepted = trace.accepted if verdict == "effects" else ()
+    model, accepted = (trace.model, trace.accepted) if verdict in NAMING else (base, ())
+    steps = error_steps(nominal_score, trace, [a.effect for a in accepted], calibrator)
+    shares = budget(steps, calibrator.settings)
     with calibrator.workers.threads():
         final = calibrator.calibrate_on_all_data(model.calibration)
         values = estimates(final, nominal)
-        ranking = _ranking(trace, [a.effect for a in accepted], values, nominal)
-    scores = {"nominal": nominal_score, "refitted": base.score, **{a.effect: a.score for a in accepted}, "final": model.score}
+        ranking = _ranking(trace, steps[1:], values, nominal)
+    scores = {"nominal": nominal_score, "refitted": base.score, **{s.name: s.after for s in steps[1:]}, "final": model.score}
     free = ("nominal", "refitted", "final")
     corrected = arm
     if verdict != "nothing_missing":
@@ -63,10 +66,12 @@ def conclude(
         arm=corrected,
         nominal=arm,
         refitted=base.arm,
-        notes=_rest(verdict, model.score, calibrator),
+        notes=_notes(verdict, steps, shares, calibrator.settings),
         trace=trace.as_json(),
         settings=calibrator.settings,
         seed=seed,
+        closed_loop=closed_loop_errors({name: scores[name] for name in free}),
+        budget=shares,
     )
 
 
@@ -74,7 +79,7 @@ def with_outlook(found: Diagnosis, trace: Trace, calibrator: Calibrator) -> Diag
     """Add detection limits, and the run to record next where the recordings leave something open."""
     smallest = {} if found.verdict == "unknown" else detection_limits(calibrator, trace.model.calibration)
     hypotheses = trace.open_hypotheses
-    is_open = len(hypotheses) > 1 and found.verdict == "effects"
+    is_open = len(hypotheses) > 1 and found.verdict in NAMING
     next_run = propose(hypotheses, calibrator.dataset.interval) if is_open else None
     return replace(found, smallest=smallest, next_run=next_run)
 
@@ -98,6 +103,7 @@ def insufficient(arm: Arm, calibrator: Calibrator) -> Diagnosis:
         notes=[],
         next_run=propose({"": nominal}, calibrator.dataset.interval),
         settings=calibrator.settings,
+        closed_loop=closed_loop_errors(dict.fromkeys(names, score)),
     )
 
 
@@ -121,19 +127,27 @@ def at_fault(arm: Arm, faults: Sequence[Fault], settings: Settings) -> Diagnosis
     )
 
 
-def _ranking(trace: Trace, accepted: Sequence[str], values: Sequence[Estimate], nominal: Arm) -> list[Candidate]:
-    """List every effect that was tried: accepted ones in their order, then the others, those that remove most first."""
+def _ranking(trace: Trace, accepted: Sequence[ErrorStep], values: Sequence[Estimate], nominal: Arm) -> list[Candidate]:
+    """List every effect that was tried: accepted ones in their order, then the others, those that remove most first.
+
+    An effect that was accepted beside another, and never tried alone, gains what its step removes.
+    """
+    names = [step.name for step in accepted]
+    untried = [Tried(s.name, _gain(s, accepted[0].before)) for s in accepted if s.name not in trace.ranking]
     ranking = []
-    for tried in sorted(trace.ranking.values(), key=lambda one: -one.gain):
-        own = values if tried.effect in accepted else estimates(tried.calibration, nominal) if tried.calibration else []
+    for tried in sorted([*trace.ranking.values(), *untried], key=lambda one: -one.gain):
+        own = values if tried.effect in names else estimates(tried.calibration, nominal) if tried.calibration else []
         own = [e for e in own if e.path.startswith(f"effects.{tried.effect}.")]
-        ranking.append(Candidate(tried.effect, tried.gain, tried.effect in accepted, own))
-    return sorted(ranking, key=lambda c: accepted.index(c.effect) if c.accepted else len(accepted))
+        ranking.append(Candidate(tried.effect, tried.gain, tried.effect in names, own))
+    return sorted(ranking, key=lambda c: names.index(c.effect) if c.accepted else len(names))
 
 
-def _rest(verdict: str, score: Score, calibrator: Calibrator) -> list[str]:
-    """Describe an error that the named effects leave."""
-    if verdict != "effects" or score.windows <= calibrator.settings.errors.explained:
-        return []
-    left = f"the corrected model still errs by {score.windows:.3g} times the noise"
-    return [f"{left}: more is missing, or the noise is larger than the arm file says"]
+def _gain(step: ErrorStep, refitted: Score) -> float:
+    """Compute the share of the refitted excess that a step removes, 0 to 1."""
+    return min(max((step.before.excess - step.after.excess) / refitted.excess, 0.0), 1.0)
+
+
+def _notes(verdict: str, steps: Sequence[ErrorStep], shares: Budget, settings: Settings) -> list[str]:
+    """Describe the error that the named effects leave, and what a step made worse."""
+    rest = rest_notes(shares, steps[-1].after.windows, settings) if verdict in NAMING else []
+    return [*rest, *budget_notes(steps, settings)]

@@ -12,11 +12,15 @@ from flexarm_env.arm import Arm
 from flexarm_env.display import Shown
 from flexarm_env.experiments.next_run import NextRun
 from flexarm_env.identify.calibrate.estimate import Estimate
+from flexarm_env.identify.explain.budget import Budget
 from flexarm_env.identify.explain.detection_limits import DetectionLimit
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.settings import SETTINGS, Settings
 
 Floats = NDArray[np.float64]
+
+#: Verdicts that name effects.
+NAMING = ("effects", "partly")
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,7 @@ class Fit:
         estimates: every fitted value.
         error: "nominal", "refitted": rms over noise on the held-out part, in windows of 1 s.
         free_run: the same, replayed once from the start.
+        closed_loop: the same in closed loop, where the recordings were made in a known one; else empty.
         seconds: time taken.
         settings: numbers of the method.
         notes: a sentence each for a person, on the recordings.
@@ -39,6 +44,7 @@ class Fit:
     free_run: dict[str, float]
     seconds: float
     settings: Settings = SETTINGS
+    closed_loop: dict[str, float] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
 
@@ -52,6 +58,7 @@ class Addition:
         estimates: the effect's parameters, then the constants.
         error: "nominal", "refitted" (constants only), "final" (with the effect): rms over noise, held out, windows of 1 s.
         free_run: the same, replayed once from the start.
+        closed_loop: the same in closed loop, where the recordings were made in a known one; else empty.
         seconds: time taken.
         settings: numbers of the method.
         notes: a sentence each for a person, on the recordings.
@@ -64,6 +71,7 @@ class Addition:
     free_run: dict[str, float]
     seconds: float
     settings: Settings = SETTINGS
+    closed_loop: dict[str, float] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
 
@@ -89,13 +97,15 @@ class Diagnosis(Shown):
     """The diagnosis of an arm, and the corrected arm.
 
     Attributes:
-        verdict: "nothing_missing", "parameters", "effects", "unknown", "recordings" or "insufficient_data".
+        verdict: "nothing_missing", "parameters", "effects", "partly" (effects are named, and more than the noise is left),
+            "unknown", "recordings" or "insufficient_data".
         effects: those accepted, in the order of their weight.
         equivalent: for each accepted effect, all that these data cannot tell from it, itself first.
         ranking: candidates by gain.
-        error: "nominal", "refitted", "final", and one entry after each accepted effect under its name; rms over noise, held
-            out, windows of 1 s.
+        error: "nominal", "refitted", "final", and one entry after each accepted effect under its name, of the model that has it
+            and those before it; rms over noise, held out, windows of 1 s.
         free_run: the same, replayed once from the start.
+        closed_loop: the same in closed loop, where the recordings were made in a known one; else empty.
         constants: all fitted values of the final arm by short name.
         arm: the corrected arm.
         nominal: the arm that came in.
@@ -108,6 +118,7 @@ class Diagnosis(Shown):
         settings: numbers of the method.
         seconds: time taken.
         seed: recorded with the result.
+        budget: shares of the excess of `error` that constants, each effect and nothing explain, in total and by signal.
     """
 
     verdict: str
@@ -128,6 +139,8 @@ class Diagnosis(Shown):
     recordings: list[Fault] = field(default_factory=list)
     trace: list[dict[str, Any]] = field(default_factory=list)
     settings: Settings = SETTINGS
+    closed_loop: dict[str, float] = field(default_factory=dict)
+    budget: Budget = field(default_factory=Budget)
 
     def as_json(self) -> dict[str, Any]:
         """Convert to plain data for `--json`."""
@@ -145,8 +158,10 @@ class Diagnosis(Shown):
                 }
                 for c in self.ranking
             ],
+            "budget": self.budget.as_json(),
             "error": self.error,
             "free_run": self.free_run,
+            "closed_loop": self.closed_loop,
             "constants": {name: e.as_json() for name, e in self.constants.items()},
             "notes": self.notes,
             "smallest": {name: hidden.as_json() for name, hidden in self.smallest.items()},

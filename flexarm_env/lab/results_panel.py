@@ -35,7 +35,7 @@ class ResultsPanel:
         """Build the part below the overlay."""
         with html.div().classes("results") as self.below:
             with html.div().classes("card"):
-                html.h2("How the held-out error fell")
+                html.h2("Held-out error after each step")
                 self.fall = Chart()
             with html.div().classes("card") as self.ranking_card:
                 html.h2("Which effect")

@@ -14,7 +14,7 @@ from flexarm_env.errors import InputError
 from flexarm_env.identify.inspect.inspection import Inspection, inspect_recordings
 from flexarm_env.identify.inspect.overview import overview
 from flexarm_env.identify.replay.dataset import prepare
-from flexarm_env.identify.results import Addition, Diagnosis
+from flexarm_env.identify.results import NAMING, Addition, Diagnosis
 from flexarm_env.lab.job import DONE, Job, Progress
 from flexarm_env.lab.live import Live
 from flexarm_env.lab.uploads import read_upload
@@ -166,7 +166,7 @@ class Session:
     @property
     def can_adopt(self) -> bool:
         """Whether the last diagnosis found a better arm that is not adopted yet."""
-        return self.diagnosis is not None and self.diagnosis.verdict in ("effects", "parameters") and not self.added
+        return self.diagnosis is not None and self.diagnosis.verdict in (*NAMING, "parameters") and not self.added
 
     def _commit_draft(self) -> Arm:
         """Record changes made by hand, if any, as a step; return the current arm."""

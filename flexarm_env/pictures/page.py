@@ -17,7 +17,10 @@ from flexarm_env.pictures.highlight import replay_of, worst_signals
 from flexarm_env.pictures.provenance_section import reproduce
 from flexarm_env.recordings.recording import Recording
 
-OVER_NOISE = "Held-out rms error over the noise; 1 (dotted) is perfect, hatched boxes are the part removed by a step."
+OVER_NOISE = (
+    "Held-out rms error over the noise; 1 (dotted) is perfect. Dashed boxes are the part that a step removes, crossed ones the "
+    "part that it adds."
+)
 
 
 @dataclass(frozen=True)
@@ -29,7 +32,7 @@ class Findings:
         recordings: of the machine, in the order of the comparison's replays.
         after: comparison of the corrected arm.
         diagnosis: that led to the corrected arm.
-        curves: of effects that act on the hub; of the remaining torque where the verdict is unknown.
+        curves: of effects that act on the hub; of the remaining torque where more is missing.
         without: comparison of the corrected arm less one new effect, by the effect's name.
         provenance: "command_line", "version", "commit" and "seed", which reproduce the report.
     """
@@ -51,9 +54,15 @@ def page(found: Findings) -> str:
     if diagnosis is not None and diagnosis.recordings:
         parts.append(_faults(diagnosis))
     elif diagnosis is not None:
-        parts += [_curves(found), _ranking(diagnosis), _falling(diagnosis), _constants(diagnosis)]
+        parts += [_budget(diagnosis), _curves(found), _ranking(diagnosis), _falling(diagnosis), _constants(diagnosis)]
         parts += [_smallest(diagnosis), _next_run(diagnosis)]
-    parts += [section("Where it fails", _errors(before, found.after)), _residuals(found), _recordings(found), _redo(found)]
+    parts += [
+        section("Where it fails", _errors(before, found.after)),
+        _loop(before, found.after),
+        _residuals(found),
+        _recordings(found),
+        _redo(found),
+    ]
     title = f"Arm {before.arm.name} against {words.counted(len(before.replays), 'recording')}"
     return document(title, parts)
 
@@ -79,7 +88,7 @@ def _glance(found: Findings) -> str:
         shown.append(figure(bars.ranking(diagnosis, 6), "glance-which", "Missing effect", caption))
     if diagnosis is not None and not diagnosis.recordings:
         steps = words.steps_of(diagnosis.error, diagnosis.effects)
-        shown.append(figure(bars.waterfall(steps), "glance-fall", "How the error fell", "Held out, over the noise."))
+        shown.append(figure(bars.waterfall(steps), "glance-fall", "Error after each step", "Held out, over the noise."))
     else:
         signal = worst_signals(found.before)[0]
         spectrum = residuals.spectrum(found.before, None, signal)
@@ -87,23 +96,48 @@ def _glance(found: Findings) -> str:
     return panels(shown)
 
 
+def _budget(diagnosis: Diagnosis) -> str:
+    """Draw the shares of the excess error, and list them by signal."""
+    rows = words.budget_rows(diagnosis.budget)
+    if not rows:
+        return ""
+    drawn = figure(bars.budget(diagnosis.budget), "budget", "", "Shares sum to 100 %; left of 0, a step makes a signal worse.")
+    text = (
+        "Shares of the excess held-out error (error² − 1) of the arm as given, in windows of 1 s. "
+        "A signal without a share had no error above the noise."
+    )
+    listed = table(words.budget_columns(diagnosis.budget), rows)
+    return section("What explains the error", paragraph(text), drawn, listed)
+
+
 def _curves(found: Findings) -> str:
+    effects, rest = (_curve_figures([c for c in found.curves if bool(c.effect) is named]) for named in (True, False))
+    effects += _contributions(found)
+    parts = [section("The effect's curve", panels(effects, wide=True))] if effects else []
+    parts += [section("Unexplained torque", panels(rest, wide=True))] if rest else []
+    return "\n".join(parts)
+
+
+def _curve_figures(curves: Sequence[EffectCurve]) -> list[str]:
     shown = []
-    for curve in found.curves:
+    for curve in curves:
         name = curve.effect.replace("_", " ") or "unexplained torque"
         caption = (
             f"Torque on the hub estimated from the recordings, without any friction law, against {curve.driver}, "
             f"while the hub moves{'' if curve.effect else '; less the torque that the arm explains'}."
         )
         shown.append(figure(effect_figures.own_curve(curve), f"curve-{curve.effect}-{curve.driver}", name, caption))
+    return shown
+
+
+def _contributions(found: Findings) -> list[str]:
+    shown = []
     for effect, without in found.without.items():
         assert found.after is not None
         drawn, where = effect_figures.contribution(without, found.after)
         caption = f"Residual of the corrected model without the effect, and the effect's contribution ({where})."
         shown.append(figure(drawn, f"share-{effect}", effect.replace("_", " "), caption))
-    unknown = found.diagnosis is not None and not found.diagnosis.effects
-    heading = "Unexplained torque" if unknown else "The effect's curve"
-    return section(heading, panels(shown, wide=True)) if shown else ""
+    return shown
 
 
 def _ranking(diagnosis: Diagnosis) -> str:
@@ -121,10 +155,12 @@ def _ranking(diagnosis: Diagnosis) -> str:
 
 def _falling(diagnosis: Diagnosis) -> str:
     shown = []
-    for name, error in (("windows of 1 s from estimated states", diagnosis.error), ("one free run", diagnosis.free_run)):
+    errors = {"windows of 1 s from estimated states": diagnosis.error, "one free run": diagnosis.free_run}
+    errors |= {"closed loop": diagnosis.closed_loop} if diagnosis.closed_loop else {}
+    for name, error in errors.items():
         drawn = bars.waterfall(words.steps_of(error, diagnosis.effects))
         shown.append(figure(drawn, f"fall-{name}", name[0].upper() + name[1:]))
-    return section("How the held-out error fell", paragraph(OVER_NOISE), panels(shown, wide=True))
+    return section("Held-out error after each step", paragraph(OVER_NOISE), panels(shown, wide=True))
 
 
 def _constants(diagnosis: Diagnosis) -> str:
@@ -187,6 +223,16 @@ def _errors(before: Comparison, after: Comparison | None) -> str:
     if after is not None:
         columns = ["signal", "part", "as given, windows", "free run", "corrected, windows", "free run"]
     return folded("Errors over the noise by signal, regime and frequency", table(columns, cells, words=2))
+
+
+def _loop(before: Comparison, after: Comparison | None) -> str:
+    """Format the errors in closed loop, of the arm as given and of the corrected one."""
+    if not before.loop_rows:
+        return ""
+    shown = [("As given", before)] + ([] if after is None else [("Corrected", after)])
+    parts = [f"<h3>{name}</h3>{table(words.LOOP_HEADS, words.loop_rows(one), words=2)}" for name, one in shown]
+    text = "The stated control law computes the command from the model's own readings and the recorded reference."
+    return section("In closed loop", paragraph(text), *parts)
 
 
 def _residuals(found: Findings) -> str:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import pairwise
 
 from flexarm_env.arm import short_name
 from flexarm_env.identify.calibrate.estimate import Estimate
+from flexarm_env.identify.explain.budget import REST, Budget, percent
 from flexarm_env.identify.explain.comparison import Comparison
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.results import Addition, Candidate, Diagnosis
@@ -128,6 +130,52 @@ def arrows(error: Mapping[str, float], effects: Sequence[str] = ()) -> str:
     return " → ".join(number(value) for _, value in steps_of(error, effects))
 
 
+def change(error: Mapping[str, float], effects: Sequence[str] = ()) -> str:
+    """Write how the error changes from step to step, with the verb that fits: "falls 4.10 → 3.70 → 1.02 × the noise"."""
+    values = [value for _, value in steps_of(error, effects)]
+    shown = [number(value) for value in values]
+    if len(set(shown)) == 1:
+        return f"stays at {shown[-1]} × the noise"
+    falls, rises = (all(sign * old >= sign * new for old, new in pairwise(values)) for sign in (1, -1))
+    return f"{'falls' if falls else 'rises' if rises else 'goes'} {' → '.join(shown)} × the noise"
+
+
+def budget_sentence(budget: Budget) -> str:
+    """Write which share of the excess error each step explains; empty where shares have no meaning."""
+    if not budget.has_meaning:
+        return ""
+    parts = [f"{name} {percent(share)}" for name, share in budget.shares.items() if name != REST]
+    worse = " (less than 0: that step makes it worse)" if min(budget.shares.values()) < 0.0 else ""
+    return f"Of the excess error (error² − 1), {', '.join(parts)}, nothing {percent(budget.shares[REST])}{worse}."
+
+
+BUDGET_HEAD = "explained by"
+
+
+def budget_columns(budget: Budget) -> list[str]:
+    """List the heads of the table of the budget."""
+    return [BUDGET_HEAD, "all signals", *map(label_of, budget.signals)]
+
+
+def budget_rows(budget: Budget) -> list[list[str]]:
+    """Format the budget: a row for each share, then the error left over the noise and in the signal's unit."""
+    if not budget.has_meaning:
+        return []
+    parts = [budget.shares, *budget.signals.values()]
+    rows = [
+        [_share_name(name), *(percent(part[name]) if math.isfinite(part[name]) else NOTHING for part in parts)]
+        for name in budget.shares
+    ]
+    left = [budget.left[signal] for signal in budget.signals]
+    rows.append(["error left / noise", "", *(number(one.over_noise) for one in left)])
+    units = [unit_of(signal) for signal in budget.signals]
+    return [*rows, ["error left, rms", "", *(f"{number(one.rms, 2)} {u}" for one, u in zip(left, units, strict=True))]]
+
+
+def _share_name(name: str) -> str:
+    return "nothing (the rest)" if name == REST else name
+
+
 def accepted(diagnosis: Diagnosis) -> list[Candidate]:
     """List the accepted candidates in the order of the verdict."""
     found = {c.effect: c for c in diagnosis.ranking}
@@ -143,15 +191,15 @@ def verdict(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "nothing_missing":
         return f"No effect is missing: the arm explains these recordings to {final} × the noise."
     if diagnosis.verdict == "parameters":
-        return f"No effect is missing. The constants were wrong: after a refit the error falls {arrows(error)} × the noise."
+        return f"No effect is missing. The constants were wrong: after a refit the error {change(error)}."
     if diagnosis.verdict == "unknown":
         return (
-            f"An effect is missing, and none of the catalogue explains these recordings: the error stays at {final} × the noise, "
-            f"from {number(error['nominal'])} as given."
+            "An effect is missing, and none of the catalogue explains these recordings: "
+            f"with the constants refitted the error {change(error)}."
         )
     if diagnosis.verdict == "insufficient_data":
         return f"These recordings are insufficient for a diagnosis: the error is {final} × the noise."
-    return " ".join([_missing(diagnosis), _doubt(diagnosis)]).strip()
+    return " ".join(filter(None, [_missing(diagnosis), budget_sentence(diagnosis.budget), _doubt(diagnosis)]))
 
 
 def _faults(faults: Sequence[Fault]) -> str:
@@ -178,9 +226,11 @@ def size_of(one: Fault) -> str:
 def _missing(diagnosis: Diagnosis) -> str:
     named = {c.effect: parameters_of(c.estimates) for c in accepted(diagnosis)}
     parts = [f"{name}, {named[name]}" if named.get(name) else name for name in diagnosis.effects]
-    falls = arrows(diagnosis.error, diagnosis.effects)
     them = "it" if len(diagnosis.effects) == 1 else "them"
-    return f"Missing: {'; '.join(parts)}. With {them} the held-out error falls {falls} × the noise."
+    partly = diagnosis.verdict == "partly"
+    more = ": more is missing" if partly else ""
+    lead = "Partly explained. Missing" if partly else "Missing"
+    return f"{lead}: {'; '.join(parts)}. With {them} the held-out error {change(diagnosis.error, diagnosis.effects)}{more}."
 
 
 def _doubt(diagnosis: Diagnosis) -> str:
@@ -191,17 +241,35 @@ def _doubt(diagnosis: Diagnosis) -> str:
 def addition(result: Addition) -> str:
     """Write the parameters and the error reduction of an added effect in two sentences."""
     own = [e for e in result.estimates if e.path.startswith(f"effects.{result.effect}.")]
-    falls = result.error["final"] < result.error["refitted"]
-    change = arrows(result.error, [result.effect])
+    helps = result.error["final"] < result.error["refitted"]
     return (
-        f"{result.effect}: {parameters_of(own) or 'added'}. "
-        f"The held-out error {'falls' if falls else 'does not fall'}: {change} × the noise."
+        f"{result.effect}: {parameters_of(own) or 'added'}. The held-out error {change(result.error, [result.effect])}"
+        f"{'' if helps else ': the effect does not lower it'}."
     )
 
 
 def comparison(result: Comparison) -> str:
     """Write an arm's error on recordings in one sentence."""
+    closed = "" if result.closed_loop is None else f", by {number(result.closed_loop)} × in closed loop"
     return (
         f"Arm '{result.arm.name}' misses by {number(result.error)} × the noise in windows of 1 s, "
-        f"by {number(result.free_run)} × in one free run; 1 is perfect."
+        f"by {number(result.free_run)} × in one free run{closed}; 1 is perfect."
     )
+
+
+#: Heads of the table of errors in closed loop.
+LOOP_HEADS = ("recording", "quantity", "error over noise", "fit", "100 ‖e‖/‖y‖")
+
+
+def loop_rows(result: Comparison) -> list[list[str]]:
+    """Format the errors in closed loop by recording and quantity."""
+    return [
+        [
+            row.recording,
+            label_of(row.quantity) if row.quantity in known_sensors() else row.quantity,
+            number(row.error),
+            f"{row.fit:.1f} %" if math.isfinite(row.fit) else NOTHING,
+            f"{number(row.relative)} %" if math.isfinite(row.relative) else NOTHING,
+        ]
+        for row in result.loop_rows
+    ]

@@ -98,13 +98,14 @@ def estimate_noise(runs: Sequence[Readings]) -> Noise | None:
         0.02
     """
     known = [run.values[np.isfinite(run.values)] for run in runs]
-    resolution = max((find_resolution(values) for values in known), default=0.0)
+    # A recording with few levels may show a multiple of the step.
+    resolution = min((step for step in map(find_resolution, known) if step), default=0.0)
     cut = [windows for windows in (run.windows() for run in runs) if len(windows)]
     if sum(map(len, cut)) < FEWEST or all(np.ptp(values) == 0.0 for values in known if len(values)):
         return None
     variance, rest, moving = _variances(cut, resolution)
     if variance < (COARSE**2 + 1.0 / 12) * resolution**2:
-        variance = _coarse_variance(together(cut), resolution)
+        variance = _coarse_variance(cut, resolution)
     else:
         variance -= resolution**2 / 12
     at_most = np.hypot(np.sqrt(np.median(together(cut).scatter)), resolution / 12**0.5)
@@ -117,12 +118,18 @@ def _variances(cut: Sequence[Windows], resolution: float) -> tuple[float, float 
     moves = [windows.spread > MOVES * np.sqrt(level) for windows in cut]
     rests = [w.where(~m) for w, m in zip(cut, moves, strict=True)]
     moving = [w.where(m) for w, m in zip(cut, moves, strict=True)]
-    states = [state for state in (*rests, *moving) if len(state) >= FEWEST_IN_STATE] or [together(cut)]
-    found = [(state.variance(), state.uncertainty(), len(state)) for state in states]
+    variance = _least([*rests, *moving]) or together(cut).variance()
+    return variance, _deviation(rests, resolution), _deviation(moving, resolution)
+
+
+def _least(states: Sequence[Windows]) -> float | None:
+    """Estimate the least variance of several states, with all that agree with it; None where none has enough windows."""
+    found = [(state.variance(), state.uncertainty(), len(state)) for state in states if len(state) >= FEWEST_IN_STATE]
+    if not found:
+        return None
     least, scatter, _ = min(found, key=lambda one: one[0] * (1.0 + AGREE * one[1]))
     agreeing = [(v, n) for v, s, n in found if v <= least * (1.0 + AGREE * np.hypot(s, scatter))]
-    variance = sum(v * n for v, n in agreeing) / sum(n for _, n in agreeing)
-    return variance, _deviation(rests, resolution), _deviation(moving, resolution)
+    return sum(v * n for v, n in agreeing) / sum(n for _, n in agreeing)
 
 
 def _deviation(states: Sequence[Windows], step: float) -> float | None:
@@ -131,12 +138,13 @@ def _deviation(states: Sequence[Windows], step: float) -> float | None:
     return float(np.sqrt(max(min(known), step**2 / 12))) if known else None
 
 
-def _coarse_variance(windows: Windows, step: float) -> float:
+def _coarse_variance(cut: Sequence[Windows], step: float) -> float:
     """Estimate the variance of noise that is smaller than a step, from how often readings cross steps."""
-    crossed = windows.spread / (step * (WINDOW + ORDER))
-    fast, slow = windows.where(crossed > FAST), windows.where(crossed < SLOW)
-    if len(fast) >= FEWEST or len(slow) < FEWEST:
-        return (fast if len(fast) >= FEWEST else windows).variance() - step**2 / 12
+    crossed = [windows.spread / (step * (WINDOW + ORDER)) for windows in cut]
+    fast = _least([windows.where(c > FAST) for windows, c in zip(cut, crossed, strict=True)])
+    slow = together([windows.where(c < SLOW) for windows, c in zip(cut, crossed, strict=True)])
+    if fast is not None or len(slow) < FEWEST:
+        return (fast or together(cut).variance()) - step**2 / 12
     shown = float(np.mean(np.minimum(slow.power.mean(axis=1), 0.25 * step**2)))
     highest = COARSE * step
     if shown >= _shown_variance(highest, step):

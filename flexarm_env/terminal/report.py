@@ -64,9 +64,8 @@ def report(
 
 
 def _curves(diagnosis: Diagnosis, recordings: Sequence[Recording]) -> list[EffectCurve]:
-    """Estimate the curves of accepted effects that act on the hub, or the unexplained torque where none explains the data."""
-    if diagnosis.verdict == "unknown":
-        found = [unexplained_curve(diagnosis.arm, driver, recordings) for driver in UNITS]
-    else:
-        found = [effect_curve(diagnosis.nominal, diagnosis.arm, effect, recordings) for effect in diagnosis.effects]
+    """Estimate the curves of accepted effects that act on the hub, and the unexplained torque where more is missing."""
+    found = [effect_curve(diagnosis.nominal, diagnosis.arm, effect, recordings) for effect in diagnosis.effects]
+    if diagnosis.verdict in ("partly", "unknown"):
+        found += [unexplained_curve(diagnosis.arm, driver, recordings) for driver in UNITS]
     return [curve for curve in found if curve is not None]

@@ -28,6 +28,7 @@ def test_compare_shows_tables_and_exits_0(flexarm, identify, runs):
     ("verdict", "effects", "code", "sentence"),
     [
         ("effects", ("backlash",), 0, "Missing: backlash, gap = 0.0612 rad (0.0582 to 0.0642)"),
+        ("partly", ("backlash",), 1, "Partly explained. Missing: backlash, gap = 0.0612 rad (0.0582 to 0.0642)"),
         ("parameters", (), 0, "constants were wrong"),
         ("nothing_missing", (), 0, "No effect is missing"),
         ("unknown", (), 1, "none of the catalogue explains"),

@@ -73,6 +73,8 @@ def test_a_rate_of_0_keeps_all_and_one_above_the_recording_is_refused(sweep):
     for rate in (2000.0, -1.0, float("nan")):
         with pytest.raises(InputError, match="1000 Hz"):
             prepare(rigid(), [sweep], rate=rate)
+    with pytest.raises(InputError, match="leaves 8 samples"):
+        prepare(rigid(), [sweep], rate=1.0)
 
 
 def test_a_sensor_slower_than_the_rows_keeps_samples(sweep):
@@ -104,6 +106,18 @@ def test_constants_and_error_agree_with_those_of_all_samples(sweep):
     assert thinned.error["refitted"] == pytest.approx(whole.error["refitted"], abs=0.05)
     for one, other in zip(whole.estimates, thinned.estimates, strict=True):
         assert one.low <= other.value <= one.high, one.path
+
+
+def test_break_away_within_a_step_keeps_samples():
+    time = np.arange(0.0, 6.0, 0.001)
+    runs = []
+    for late in (0, 2):  # the command steps at a kept sample, or in the middle of a step
+        command = np.where((time + 1e-9) % 1.0 < 0.5, 0.0, 6.0 * np.sign(np.sin(2.0 * np.pi * time / 2.0) + 0.1))
+        played = Recording.from_arrays("steps", time, "voltage", np.roll(command, late), {}, require_signal=False)
+        runs.append(simulate(rigid(), played, seed=1))
+    aligned, between = (prepare(rigid(), [run])[1].interval for run in runs)
+    assert aligned == pytest.approx(0.004)
+    assert between < 0.003
 
 
 @pytest.mark.parametrize(("effect", "parameter", "size"), [("input_delay", "delay", 0.006), ("current_lag", "time", 0.01)])

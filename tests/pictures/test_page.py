@@ -16,6 +16,7 @@ from plotly.offline import get_plotlyjs
 
 from flexarm_env.experiments.next_run import NextRun
 from flexarm_env.identify.explain.detection_limits import DetectionLimit
+from flexarm_env.pictures import bars
 from flexarm_env.pictures.page import Findings, page
 
 REDO = {"command_line": "flexarm diagnose runs --seed 7", "version": "0.1.0", "commit": "abcdef", "seed": 7}
@@ -74,7 +75,7 @@ def test_the_verdict_stands_on_top():
         "Missing: backlash",
         "Where it fails",
         "Missing effect",
-        "How the error fell",
+        "Error after each step",
         "Which effect",
         "Constants",
         "Residuals",
@@ -86,7 +87,15 @@ def test_each_step_has_a_bar_and_the_noise_is_the_last():
     drawn = figures(one_of(comparison(200, 0), comparison(200, 3), diagnosis=diagnosis()))["glance-fall"]["data"]
     solid = [bar for bar in drawn if "base" not in bar]
     assert [bar["x"] for bar in solid] == [[4.1], [3.7], [1.02], [1.0]]
-    assert solid[-1]["y"] == ["noise floor"]
+    assert solid[-1]["y"] == ["noise floor <b>1</b>"]
+    assert solid[2]["y"] == ["+ backlash <b>1.02</b>"]
+
+
+def test_a_box_reaches_from_the_error_before_to_the_error_after():
+    steps = [("as given", 3.0), ("constants refitted", 4.5), ("+ backlash", 1.13)]
+    boxes = [bar for bar in bars.waterfall(steps).data if bar.base is not None]
+    assert [(bar.base[0], bar.base[0] + bar.x[0]) for bar in boxes] == [(3.0, 4.5), (1.13, pytest.approx(4.5))]
+    assert boxes[0].marker != boxes[1].marker  # an error that rises looks other than one that falls
 
 
 def test_residuals_stand_against_every_driver_by_regime():

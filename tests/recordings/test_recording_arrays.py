@@ -32,6 +32,10 @@ from flexarm_env.sensors import known_sensors
         ({"command": [1, [2], 3, 4, 5]}, "vector"),
         ({"command": list("abcde")}, "vector"),
         ({"command": [1, 2, 3, 4, np.inf]}, "sample 5, column 'current'"),
+        ({"command": [1, 2, 3, np.nan, 5]}, "sample 4, column 'current': is nan"),
+        ({"reference": [1, 2, 3, np.nan, 5]}, "sample 4, column 'reference': is nan"),
+        ({"signals": {"arm_angle": [1, np.nan, np.inf, 4, 5]}}, "sample 3, column 'arm_angle': is inf"),
+        ({"signals": {"arm_angle": np.zeros(5), "strain_mid": np.full(5, np.nan)}}, "column 'strain_mid': has no reading"),
         ({"time": [0, 1, 2, 2, 3]}, "sample 4, column 'time': repeats"),
         ({"time": [-1e308, 0, 1e308, 1.1e308, 1.2e308]}, "column 'time'"),
         ({"conditions": {"payload": -1.0}}, "payload"),
@@ -73,6 +77,7 @@ readings = st.floats(-1e7, 1e7)
 def recordings(draw: st.DrawFn) -> Recording:
     n = draw(st.integers(2, 12))
     column = arrays(np.float64, n, elements=readings)
+    measured = arrays(np.float64, n, elements=readings | st.just(np.nan)).filter(lambda values: not np.isnan(values).all())
     steps = draw(arrays(np.float64, n - 1, elements=st.floats(0.02, 100.0)))
     names = draw(st.lists(st.sampled_from(list(known_sensors())), min_size=1, unique=True))
     return Recording.from_arrays(
@@ -80,7 +85,7 @@ def recordings(draw: st.DrawFn) -> Recording:
         np.concatenate([[0.0], np.cumsum(steps)]),
         draw(st.sampled_from(["current", "voltage"])),
         draw(column),
-        {name: draw(column) for name in names},
+        {name: draw(measured) for name in names},
         draw(st.none() | column),
         draw(st.dictionaries(st.sampled_from(["payload", "temperature", "start"]), st.floats(0, 1e6))),
     )

@@ -8,6 +8,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.constant import constant
 from flexarm_env.identify.inspect.dropout import dropout
 from flexarm_env.identify.inspect.fault import Fault
+from flexarm_env.identify.inspect.frozen import frozen
 from flexarm_env.identify.inspect.glued import glued
 from flexarm_env.identify.inspect.held import held
 from flexarm_env.identify.inspect.limit import limit
@@ -20,4 +21,4 @@ from flexarm_env.recordings.recording import Recording
 #: A check takes a recording, the arm and the numbers of the inspection.
 Check = Callable[[Recording, Arm, Inspecting], list[Fault]]
 
-CHECKS: tuple[Check, ...] = (constant, limit, wrap, held, dropout, spike, glued, rail)
+CHECKS: tuple[Check, ...] = (constant, limit, wrap, held, dropout, spike, glued, rail, frozen)

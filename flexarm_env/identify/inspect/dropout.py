@@ -24,7 +24,7 @@ def dropout(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
         kept, counts = np.unique(series.values[lost.readings()], return_counts=True)
         value = float(kept[counts.argmax()])
         rows = series.rows[lost.readings()]
-        text = f"drops out: it is {shown(signal, value)} in {row_list(recording, rows, numbers.most_named)}"
+        text = f"drops out: it is {shown(signal, value)} in {row_list(rows, numbers.most_named)}"
         hint = ignore(recording, signal, rows, numbers.most_ignored)
         found.append(fault(recording, signal, "dropout", value, text, hint, rows))
     return found

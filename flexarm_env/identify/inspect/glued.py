@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 
 import numpy as np
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.report import fault, quantity
-from flexarm_env.identify.inspect.series import Integers, Series
+from flexarm_env.identify.inspect.series import Floats, Series
 from flexarm_env.identify.inspect.wild import usual_change
 from flexarm_env.identify.inspect.wrap import wraps
 from flexarm_env.identify.settings import Inspecting
@@ -18,11 +19,17 @@ from flexarm_env.recordings.recording import Recording
 
 
 def glued(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
-    """Find samples at which a signal jumps and all stand as the recording began, or at which several jump at once."""
+    """Find samples at which a signal jumps and all stand as the recording began, or at which several jump at once.
+
+    Across a gap signals go on meanwhile, so that several may well have changed.
+    """
     series = {signal: Series.of(recording, signal, numbers) for signal in recording.signals}
-    jumps = Counter(int(row) for signal, one in series.items() for row in _jumps(one, UNITS[signal] == "rad", numbers))
+    sudden: Counter[int] = Counter()
+    for signal, one in series.items():
+        for row, is_sudden in _jumps(one, recording.time[one.rows], UNITS[signal] == "rad", numbers):
+            sudden[row] += int(is_sudden)
     found = []
-    for row, count in sorted(jumps.items()):
+    for row, count in sorted(sudden.items()):
         if count > 1 or _begins_again(row, series, numbers):
             time = float(recording.time[row])
             text = (
@@ -33,21 +40,25 @@ def glued(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
     return found
 
 
-def _jumps(series: Series, is_angle: bool, numbers: Inspecting) -> Integers:
-    """Find the samples at which a signal has jumped by far more than it changes elsewhere, and stays there."""
+def _jumps(series: Series, time: Floats, is_angle: bool, numbers: Inspecting) -> Iterator[tuple[int, bool]]:
+    """Find the samples at which a signal has changed by far more than elsewhere, and stays there.
+
+    Yields:
+        The sample, and whether the time since the reading before it is too short for such a change.
+    """
     changes, length = np.abs(series.changes), numbers.goes_on
     if len(changes) < 2 * length or wraps(series, is_angle, numbers)[1]:
-        return np.zeros(0, dtype=np.int64)
+        return
     largest = np.argsort(changes)[: -numbers.most_glued - 1 : -1]
     rest = float(np.delete(changes, largest).max(initial=0.0))
+    steps = np.diff(time)
     least = max(numbers.jump * rest, numbers.jump_noise * series.noise, numbers.wild_steps * series.step)
-    rows = []
     for place in largest:
-        before, after = (series.values[max(place - length + 1, 0) : place + 1], series.values[place + 1 : place + 1 + length])
+        before, after = series.values[max(place - length + 1, 0) : place + 1], series.values[place + 1 : place + 1 + length]
         stays = abs(float(np.median(after)) - float(np.median(before))) > numbers.stays * changes[place]
         if changes[place] > least and stays:
-            rows.append(series.rows[place + 1])
-    return np.array(rows, dtype=np.int64)
+            meanwhile = float(steps[place] / np.median(steps))
+            yield int(series.rows[place + 1]), bool(changes[place] > least * max(meanwhile, 1))
 
 
 def _begins_again(row: int, series: dict[str, Series], numbers: Inspecting) -> bool:

@@ -12,6 +12,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.catalogue import CHECKS
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.mend import mended
+from flexarm_env.identify.inspect.motion import motion_faults
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.recordings.columns import UNITS
 from flexarm_env.recordings.noise import Readings, estimate_noise
@@ -92,14 +93,22 @@ def inspect_recordings(arm: Arm, recordings: Sequence[Recording], settings: Sett
     faults: list[Fault] = []
     sound = []
     for recording in recordings:
-        left = recording
-        for check in CHECKS:
-            found = check(left, arm, settings.inspecting)
-            faults += found
-            left = mended(left, found)
+        found, left = reading_faults(arm, recording, settings)
+        faults += found
         sound.append(left)
+    faults += motion_faults(arm, sound, settings)
     facts = tuple(_facts(r, signal) for r in recordings for signal in r.signals)
     return Inspection(tuple(faults), facts, tuple(sound), time.perf_counter() - began)
+
+
+def reading_faults(arm: Arm, recording: Recording, settings: Settings = SETTINGS) -> tuple[list[Fault], Recording]:
+    """Find the faults of a recording that its readings show without a model, and mend them in memory."""
+    faults: list[Fault] = []
+    for check in CHECKS:
+        found = check(recording, arm, settings.inspecting)
+        faults += found
+        recording = mended(recording, found)
+    return faults, recording
 
 
 def _facts(recording: Recording, signal: str) -> SignalFacts:

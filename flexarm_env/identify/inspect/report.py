@@ -76,7 +76,7 @@ def ignore(recording: Recording, signal: str, rows: np.ndarray, most: int) -> st
     return f"{signal} = {{ ignore = [{', '.join(f'[{max(a, 0.0):.6g}, {b:.6g}]' for a, b in found)}] }}"
 
 
-def row_list(recording: Recording, rows: np.ndarray, most: int) -> str:
+def row_list(rows: np.ndarray, most: int) -> str:
     """Name the samples, counted from 1, in a few words: "samples 1201 to 1210, 2004 and 3 more"."""
     cuts = np.flatnonzero(np.diff(rows) > 1)
     first, last = rows[np.r_[0, cuts + 1]] + 1, rows[np.r_[cuts, len(rows) - 1]] + 1

@@ -58,3 +58,18 @@ class Series:
         """Find stretches of equal readings; return the index of the first reading of each, and their lengths."""
         starts = np.flatnonzero(np.r_[True, self.changes != 0.0]).astype(np.int64)
         return starts, np.diff(np.r_[starts, len(self)]).astype(np.int64)
+
+    def most_repeats(self, elsewhere: NDArray[np.bool_], numbers: Inspecting) -> float:
+        """Compute the largest share of repeated readings in any stretch of the signal.
+
+        Args:
+            elsewhere: (n,) readings that count.
+            numbers: of the inspection.
+        """
+        length = (len(self) - 1) // numbers.stretches
+        pieces = length * numbers.stretches
+        repeated, counted = (self.changes == 0.0) & elsewhere[1:], elsewhere[1:]
+        sums = [part[:pieces].reshape(numbers.stretches, length).sum(axis=1) for part in (repeated, counted)]
+        enough = sums[1] >= numbers.fewest_at_rail
+        shares = sums[0][enough] / sums[1][enough]
+        return float(np.clip(shares.max() if shares.size else 1.0, numbers.least_repeats, 1.0))

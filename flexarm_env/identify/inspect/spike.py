@@ -23,7 +23,7 @@ def spike(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
             continue
         rows = series.rows[spikes.readings()]
         height = float(np.abs(spikes.height).max())
-        text = f"has spikes of up to {shown(signal, height)}: {row_list(recording, rows, numbers.most_named)}"
+        text = f"has spikes of up to {shown(signal, height)}: {row_list(rows, numbers.most_named)}"
         hint = ignore(recording, signal, rows, numbers.most_ignored)
         found.append(fault(recording, signal, "spike", height, text, hint, rows))
     return found

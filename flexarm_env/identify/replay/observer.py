@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.replay.dataset import Dataset
+from flexarm_env.identify.replay.run import Run
 from flexarm_env.plant.plant import Plant
 
 Floats = NDArray[np.float64]
@@ -44,11 +45,39 @@ def physical_gains(plant: Plant, dataset: Dataset, torque_noise: float, held_dri
 
 
 def innovation_sigma(plant: Plant, dataset: Dataset, torque_noise: float) -> Floats:
-    """Compute the standard deviation (signals,) of a moving arm's innovations under the stated noises."""
+    """Compute the standard deviation (signals,) of a moving arm's innovations under the stated noises, if nothing is absent."""
     transition, process = _process(plant, 0, dataset, torque_noise)
     output, noise = plant.model.output, dataset.noise
     covariance = _riccati(transition, output, process, noise, dataset.settings.observers.doublings)
     return np.asarray(np.sqrt(np.diag(output @ covariance @ output.T) + noise**2), dtype=np.float64)
+
+
+def innovation_sigmas(plant: Plant, run: Run, dataset: Dataset, torque_noise: float, gains: Floats) -> Floats:
+    """Compute those (samples, signals) of a run with absent readings, between which the uncertainty of the state grows.
+
+    The covariance of the state's error is carried along in Joseph's form, which holds for any gains.
+
+    Args:
+        plant: a compiled arm.
+        run: the recording.
+        dataset: to which the run belongs.
+        torque_noise: standard deviation of a torque on the hub, new in each sample [Nm].
+        gains: physical ones (modes, states, signals) of the observer.
+    """
+    transition, process = _process(plant, 0, dataset, torque_noise)
+    output, noise = plant.model.output, dataset.noise
+    covariance = _riccati(transition, output, process, noise, dataset.settings.observers.doublings)
+    steps = {}
+    variances = np.empty_like(run.measured)
+    for k, there in enumerate(~np.isnan(run.measured)):
+        variances[k] = np.diag(output @ covariance @ output.T) + noise**2
+        key = there.tobytes()
+        if key not in steps:
+            gain = transition @ (gains[0] * there)
+            steps[key] = transition - gain @ output, (gain * noise**2) @ gain.T + process
+        ahead, added = steps[key]
+        covariance = ahead @ covariance @ ahead.T + added
+    return np.sqrt(variances)
 
 
 def modal_gains(plant: Plant, physical: Floats) -> Floats:
@@ -89,7 +118,8 @@ def _gain(plant: Plant, mode: int, dataset: Dataset, torque_noise: float, held_d
     numbers, noise = dataset.settings.observers, dataset.noise
     transition, process = _process(plant, mode, dataset, torque_noise, held_drift)
     output = plant.model.output
-    covariance = _riccati(transition, output, process, noise, numbers.doublings)
+    # A signal that comes in a share of the samples tells as much as one in all of them with the noise that averages to its own.
+    covariance = _riccati(transition, output, process, noise / np.sqrt(dataset.shares), numbers.doublings)
     seen = output @ covariance @ output.T + np.diag(noise**2)
     gain = np.asarray(np.linalg.solve(seen, output @ covariance).T, dtype=np.float64)
     if not np.isfinite(gain).all():

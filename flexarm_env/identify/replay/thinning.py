@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
-from flexarm_env.identify.replay.scales import inertia_of
-from flexarm_env.identify.settings import Settings, Thinning
+from flexarm_env.identify.settings import LEAST_FREQUENCY, Settings
+from flexarm_env.plant.plant import NO_GAINS, NO_INTERVALS, NOT_MEASURED, Plant
 from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
@@ -22,9 +22,9 @@ def thin(
 ) -> tuple[list[Recording], list[str]]:
     """Keep every k-th sample of recordings, with the mean of the command since the one before it.
 
-    The mean keeps the impulse of the command in each step, and so the motion of a linear arm that is slow beside it. The step is
-    the longest that resolves the fastest vibration in the signals, the arm's own lags and the smallest delay that a diagnosis
-    looks for, and that moves the hub by less than the noise.
+    The mean keeps the impulse of the command in each step, and so the motion of an arm that is slow beside it. The step is the
+    longest that resolves the slow vibrations, the arm's own lags and the smallest delay that a diagnosis looks for, and at which
+    the mean command moves no signal by more than a share of its noise.
 
     Args:
         arm: the model, with the recordings' signals alone.
@@ -39,22 +39,29 @@ def thin(
     Raises:
         InputError: for a rate above the recordings', and for one beside stated torque noise.
     """
-    interval = float(np.median([r.sample_time for r in recordings]))
-    count = _count(arm, recordings, noise, settings, interval) if rate is None else _asked_count(arm, rate, interval, settings)
+    interval = _interval(recordings)
+    count = _count(arm, recordings, noise, settings, interval) if rate is None else _asked_count(arm, recordings, rate, settings)
     if count < 2:
         return list(recordings), []
     kept = f"thinned from {1.0 / interval:.4g} to {1.0 / (count * interval):.4g} Hz"
-    why = "as asked" if rate is not None else "which resolves the fastest vibration, lag and delay; --rate 0 keeps all"
+    why = "as asked" if rate is not None else "which vibrations, lags and commands allow; --rate 0 keeps all"
     return [_thinned(r, count * interval) for r in recordings], [f"{kept}, {why}"]
 
 
-def _asked_count(arm: Arm, rate: float, interval: float, settings: Settings) -> int:
-    recorded = 1.0 / interval
+def _interval(recordings: Sequence[Recording]) -> float:
+    return float(np.median([r.sample_time for r in recordings]))
+
+
+def _asked_count(arm: Arm, recordings: Sequence[Recording], rate: float, settings: Settings) -> int:
+    recorded, shortest = 1.0 / _interval(recordings), min(map(len, recordings))
     if not 0.0 <= rate <= recorded * (1.0 + settings.preparation.uneven):
         raise InputError(f"rate {rate:g} Hz: give up to {recorded:.4g} Hz, at which it is recorded, or 0 to keep all samples")
     count = round(recorded / rate) if rate else 1
     if count > 1 and arm.constants["drive"]["torque_noise"] > 0.0:
         raise InputError(f"arm '{arm.name}' states torque_noise for each sample at {recorded:.4g} Hz: leave out the rate")
+    fewest = settings.preparation.fewest_samples
+    if count * fewest > shortest:
+        raise InputError(f"rate {rate:g} Hz leaves {shortest // count} samples of a recording; at least {fewest} are needed")
     return count
 
 
@@ -65,73 +72,69 @@ def _count(arm: Arm, recordings: Sequence[Recording], noise: Floats, settings: S
     shortest = min(map(len, recordings))
     if gaps or arm.constants["drive"]["torque_noise"] > 0.0:
         return 1
-    longest = min(numbers.longest_step, _shortest_lag(arm) * numbers.share_of_lag)
+    longest = min(
+        numbers.longest_step,
+        numbers.share_of_lag * _shortest_lag(arm, recordings),
+        numbers.share_of_period / _slow_vibration(arm, interval, numbers.slowest),
+    )
     count = min(int(longest / interval * (1.0 + settings.preparation.uneven)), shortest // numbers.fewest_samples)
-    if count < 2:
-        return 1
-    fastest = fastest_vibration(arm, recordings, noise, interval, numbers)
-    count = min(count, int(1.0 / (interval * numbers.samples_per_period * fastest))) if fastest else count
-    while count > 1 and _displacement(arm, recordings, noise, count * interval, settings) > numbers.displacement:
-        count -= 1
+    if count > 1:
+        plant = _with_friction(arm, recordings, settings).plant(interval)
+        while count > 1 and not _command_error(plant, recordings, noise, count * interval, settings) <= numbers.command_error:
+            count -= 1
     return max(count, 1)
 
 
-def _shortest_lag(arm: Arm) -> float:
-    """Find the shortest time constant of the arm's sensors and drive [s]; infinite without any."""
+def _shortest_lag(arm: Arm, recordings: Sequence[Recording]) -> float:
+    """Find the shortest time constant of sensors and drive, or period of a replayed control law [s]; infinite without any."""
     structure = arm.structure()
     lags = [structure.current_lag, *(float(channel.filter) for channel in structure.sensors.values())]
+    for recording in recordings:
+        law = recording.controller or arm.controller
+        if law is not None and recording.reference is not None:
+            lags.append(1.0 / law.rate if law.rate > 0.0 else recording.sample_time)
     return min((lag for lag in lags if lag > 0.0), default=float("inf"))
 
 
-def fastest_vibration(arm: Arm, recordings: Sequence[Recording], noise: Floats, interval: float, numbers: Thinning) -> float:
-    """Find the highest eigenfrequency [Hz] at which a signal rises above its noise, or that always counts; 0 without any."""
-    modes = [arm.linearise(mode, interval).vibrations()[0] for mode in ("moving", "stuck")]
-    frequencies = np.concatenate(modes)
-    found = max((float(mode[: numbers.always_seen].max(initial=0.0)) for mode in modes), default=0.0)
-    for recording in recordings:
-        for signal, deviation in zip(arm.signals, noise, strict=True):
-            bins, power = _spectrum(recording.signals[signal], recording.sample_time, numbers.spectrum_samples)
-            for frequency in frequencies[frequencies > found]:
-                near = (bins > frequency / numbers.band) & (bins < frequency * numbers.band)
-                if power[near].max(initial=0.0) > numbers.seen * deviation**2:
-                    found = max(found, float(frequency))
-    return found
+def _slow_vibration(arm: Arm, interval: float, slowest: int) -> float:
+    """Find the fastest of the slowest vibrations of the free and of the held hub [Hz]; the rate's reciprocal without any."""
+    found = [arm.linearise(mode, interval).vibrations()[0][:slowest] for mode in ("moving", "stuck")]
+    return float(np.concatenate(found).max(initial=LEAST_FREQUENCY))
 
 
-def _spectrum(readings: Floats, interval: float, samples: int) -> tuple[Floats, Floats]:
-    """Compute the largest power of a signal in any window by frequency [Hz]; white noise of variance 1 gives 1 on average.
+def _with_friction(arm: Arm, recordings: Sequence[Recording], settings: Settings) -> Arm:
+    """Give an arm without Coulomb friction one of the usual size: the machine may have what the model lacks."""
+    if "coulomb" in arm.effects or not arm.can_have("coulomb"):
+        return arm
+    command = np.sqrt(np.mean([np.mean(r.command**2) for r in recordings]))
+    usual = arm.known["coulomb"].parameters["torque"].typical / settings.reference.torque
+    return arm.with_effect("coulomb", torque=float(usual * arm.structure().torque_by_command * command))
 
-    Second differences first, under a Hann taper: the power of slow motion would leak into the other bins.
+
+def _command_error(plant: Plant, recordings: Sequence[Recording], noise: Floats, step: float, settings: Settings) -> float:
+    """Simulate the error that mean commands make in a signal, rms over its noise in windows; that of the worst signal.
+
+    Each window starts from the state under the recorded commands. Friction makes the error: a hub breaks away within a step.
     """
-    change = np.diff(readings, 2)
-    samples = min(samples, len(change))
-    taper = np.hanning(samples + 2)[1:-1]
-    rows = np.arange(0, len(change) - samples + 1, max(samples // 2, 1))[:, None] + np.arange(samples)
-    bins = np.arange(1, samples // 2 + 1) / (samples * interval)
-    power = np.abs(np.fft.rfft(change[rows] * taper, axis=1)).max(axis=0)[1:] ** 2 / np.sum(taper**2)
-    return bins, power / (2.0 * np.sin(np.pi * bins * interval)) ** 4
-
-
-def _displacement(arm: Arm, recordings: Sequence[Recording], noise: Floats, step: float, settings: Settings) -> float:
-    """Estimate how far a step moves a free and rigid arm in a window, rms over the noise of its angle.
-
-    The mean command gives the hub the same speed at the end of a step, and another angle.
-    """
-    if "arm_angle" not in arm.signals:
-        return 0.0
-    per_command = arm.structure().torque_by_command / inertia_of(arm)
-    length = max(round(settings.preparation.window / step), 2)
-    squares = []
+    squares, samples = np.zeros(len(noise)), 0
     for recording in recordings:
-        first = kept_samples(recording.time, step)
-        durations = np.append(np.diff(recording.time), 0.0)
-        group = np.repeat(np.arange(len(first)), np.diff(np.append(first, len(durations))))
-        off = recording.command - _mean_command(recording, first)[group]
-        end = np.append(recording.time[first[1:]], recording.time[-1])[group]
-        moved = np.cumsum(np.add.reduceat(off * durations * (end - recording.time - durations / 2), first)) * per_command
-        windows = [moved[start : start + length] - moved[start] for start in range(0, len(moved), length)]
-        squares.append(np.mean(np.concatenate(windows) ** 2))
-    return float(np.sqrt(np.mean(squares)) / noise[list(arm.signals).index("arm_angle")])
+        kept = kept_samples(recording.time, step)
+        steps = np.append(np.diff(recording.time), step)
+        intervals = steps if np.ptp(steps[:-1]) > settings.preparation.uneven * step else NO_INTERVALS
+        mean = np.repeat(_mean_command(recording, kept), np.diff(np.append(kept, len(steps))))
+        plant.place()
+        commands = [plant.delayed(command) for command in (mean, np.ascontiguousarray(recording.command))]
+        length = max(round(settings.preparation.window / step), 1)
+        for first in range(0, len(kept) - 1, length):
+            window = kept[first : first + length + 1]
+            part, state = slice(window[0], window[-1] + 1), plant.state.copy()
+            played = []
+            for command in commands:  # the recorded one last: its state is that of the next window
+                plant.state[:] = state
+                played.append(plant.play(command[part], intervals[part], NO_GAINS, NOT_MEASURED))
+            squares += np.sum(((played[0] - played[1])[window - window[0]] / noise) ** 2, axis=0)
+            samples += len(window)
+    return float(np.sqrt(squares.max() / samples))
 
 
 def kept_samples(time: Floats, step: float) -> NDArray[np.int64]:

@@ -71,8 +71,8 @@ class EffectSize:
         """
         objective = replace(self.base.objective, observers=ObserverBank())
         change = objective.residual_of(self.arm) - self.base.residual
-        left = self.base.unexplained(change)
-        return float(np.mean(change**2)), float(np.mean(left**2))
+        left, count = self.base.unexplained(change), objective.dataset.readings(held_out=False)
+        return float(np.sum(change**2) / count), float(np.sum(left**2) / count)
 
     def stepped(self, wanted: float, rise: float) -> EffectSize:
         """Scale the size to where a variance that grows with its square is as wanted, or half way between known sizes.

@@ -11,6 +11,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from flexarm_env import Arm, Recording, inspect_recordings
+from flexarm_env.identify.inspect.inspection import reading_faults
 
 CU = Arm.load("cu-rigid")
 TIME = np.arange(0.0, 4.0, 0.004)
@@ -40,11 +41,10 @@ def test_a_wrap_of_any_modulus_is_found_and_undone(amplitude, share, start, rate
     angle = sound.signals["arm_angle"]
     modulus = share * float(np.ptp(angle))
     assume(np.abs(np.diff(angle)).max() < 0.2 * modulus)
-    found = inspect_recordings(CU, [wrapped(sound, modulus, float(angle.min()) + start * modulus)])
-    (fault,) = found.faults
+    (fault,), mended = reading_faults(CU, wrapped(sound, modulus, float(angle.min()) + start * modulus))
     assert (fault.kind, fault.signal) == ("wrap", "arm_angle")
     assert fault.value == pytest.approx(modulus, rel=0.02)
-    off = found.mended[0].signals["arm_angle"] - angle
+    off = mended.signals["arm_angle"] - angle
     turns = len(fault.rows) * abs(fault.value - modulus)
     assert np.ptp(off) <= turns + 1e-6 * modulus
 
