@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from inspection_results import CUT
+from inspection_results import overview as overview_by_hand
 from picture_results import diagnosis
 
 from flexarm_env import Arm, InputError, Recording, simulate
@@ -179,3 +181,22 @@ def test_the_next_run_is_a_file_that_can_be_played(session, tmp_path):
     path.write_text(session.next_run())
     played = Recording.read(path, require_signal=False)
     assert np.allclose(played.command, run.command, rtol=0.0, atol=0.0)
+
+
+def test_recordings_are_inspected_as_they_come_and_their_page_is_written(session, monkeypatch):
+    assert session.inspection.faults == ()
+    run = session.recordings[0]
+    lost = run.signals["arm_angle"].copy()
+    lost[200:205] = 0.0
+    session.use([replace(run, signals=run.signals | {"arm_angle": lost})])
+    (fault,) = session.inspection.faults
+    assert (fault.signal, fault.kind) == ("arm_angle", "dropout")
+    begun = []
+    monkeypatch.setattr("flexarm_env.lab.session.Job", lambda title, work: begun.append((title, work)) or Ended("<html>"))
+    session.write_inspection()
+    ((title, work),) = begun
+    assert title == "Inspecting"
+    monkeypatch.setattr("flexarm_env.lab.session.overview", lambda arm, recordings, progress: overview_by_hand(CUT))
+    assert CUT.message in work(lambda done, text: None)
+    session.use([])
+    assert session.inspection is None

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import gzip
-import json
 import re
 from dataclasses import replace
 
@@ -13,6 +10,7 @@ import pytest
 
 pytest.importorskip("plotly")
 
+from page_parts import figures, unpacked, visible
 from picture_results import SIGNALS, comparison, diagnosis, recordings
 from plotly.offline import get_plotlyjs
 
@@ -21,24 +19,7 @@ from flexarm_env.identify.explain.detection_limits import DetectionLimit
 from flexarm_env.pictures import bars
 from flexarm_env.pictures.page import Findings, page
 
-PLACE = re.compile(r'id="(figure-[^"]*)" style="[^"]*"><script type="text/plain">([^<]*)</script>')
 REDO = {"command_line": "flexarm diagnose runs --seed 7", "version": "0.1.0", "commit": "abcdef", "seed": 7}
-
-
-def unpacked(block: str) -> str:
-    return gzip.decompress(base64.b64decode(block)).decode()
-
-
-def figures(text: str) -> dict[str, dict]:
-    """The figures of a page by their place, as the browser gets them."""
-    found = {place.removeprefix("figure-"): json.loads(unpacked(block)) for place, block in PLACE.findall(text)}
-    assert len(found) == text.count('<div class="plot"'), "two figures have one place"
-    return found
-
-
-def visible(text: str) -> str:
-    """What is there to read."""
-    return re.sub(r"<[^>]+>", " ", re.sub(r"<(script|style)[^>]*>.*?</\1>", "", text, flags=re.DOTALL))
 
 
 def one_of(result, after=None, **more) -> str:

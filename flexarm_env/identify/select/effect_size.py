@@ -151,12 +151,17 @@ def _by_innovations(size: EffectSize, wanted: float) -> tuple[EffectSize, float]
 
 
 def _by_windows(size: EffectSize, wanted: float, share: float, rise_of: Rise) -> EffectSize | None:
-    """Correct a size by the rise of the error in windows, until a correction is small; None where it never rises."""
-    rises, close = False, size.numbers.close
+    """Correct a size by the rise of the error in windows, until a correction is small; None where it never rises.
+
+    A size below which the error no longer falls is kept: smaller ones are not resolved, as of a compliance.
+    """
+    before, last, rises, close = size, math.inf, False, size.numbers.close
     for _ in range(size.numbers.window_steps):
         rise = rise_of(size.arm)
+        if size.multiple < before.multiple and rise >= last:
+            return before
         rises = rises or rise > 0.0
-        before, size = size, size.stepped(wanted, share * rise)
+        before, last, size = size, rise, size.stepped(wanted, share * rise)
         if size.factor_from(before) < (close if size.is_bracketed else math.log(size.numbers.step_up) - close):
             break
     return size if rises else None
