@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexarm_env import Arm, Recording
+from flexarm_env import Arm, Recording, simulate
 from flexarm_env.parameters import reading_noise
 
 Rng = np.random.Generator
@@ -189,7 +189,9 @@ def limit(rng: Rng, arm: Arm, recordings: list[Recording], signal: str) -> Injec
     if not largest:
         return None
     size = float(rng.uniform(1.1, 3.0))
-    made = replace(one, command=one.command / np.abs(one.command).max() * size * largest)
+    command = one.command / np.abs(one.command).max() * size * largest
+    played = simulate(arm, replace(one, command=np.clip(command, -largest, largest)), seed=int(rng.integers(2**31)))
+    made = replace(played, command=command)
     return [*recordings[:place], made, *recordings[place + 1 :]], Truth("limit", one.input_kind, size, (one.name,))
 
 

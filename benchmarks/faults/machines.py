@@ -16,8 +16,8 @@ DURATIONS, RATES = (4.0, 10.0), (200.0, 500.0)
 CONSTANTS = ("drive.torque_constant", "hub.inertia", "beam.mass_per_length", "beam.bending_stiffness")
 
 
-def draw(rng: np.random.Generator) -> tuple[Arm, list[Recording]]:
-    """Draw a model, and simulate three recordings of a machine that may differ from it by a few percent."""
+def draw(rng: np.random.Generator) -> tuple[Arm, Arm, list[Recording]]:
+    """Draw a model, a machine that may differ from it by a few percent, and three recordings of the machine."""
     model = Arm.load(NAMES[rng.integers(len(NAMES))])
     if model.name != "emps" and rng.random() < 0.3:
         model = _with_steps(model, float(rng.uniform(0.2, 2.0)))
@@ -33,7 +33,7 @@ def draw(rng: np.random.Generator) -> tuple[Arm, list[Recording]]:
     inputs = [INPUTS[i] for i in rng.integers(len(INPUTS), size=3)]
     names = [f"{name}-{i}" for i, name in enumerate(inputs, start=1)]
     runs = [simulate(machine, name, duration, rate, seed + i, name=names[i]) for i, name in enumerate(inputs)]
-    return model, runs
+    return model, machine, runs
 
 
 def _with_steps(arm: Arm, share: float) -> Arm:

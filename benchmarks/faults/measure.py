@@ -58,11 +58,11 @@ def _chain(*parts: Iterable[sound.Case]) -> Iterator[sound.Case]:
 def _case(rng: np.random.Generator, kind: str) -> tuple[Arm, list[Recording], list[Recording] | RestartError, Truth]:
     """Draw machines until one shows a fault of the kind."""
     while True:
-        arm, recordings = draw(rng)
+        arm, machine, recordings = draw(rng)
         if kind == "restart":
             return arm, recordings, *_restarted(rng, recordings)
         for _ in range(TRIES):
-            made = inject(rng, kind, arm, recordings)
+            made = inject(rng, kind, machine, recordings)
             if made is not None:
                 return arm, recordings, *made
 

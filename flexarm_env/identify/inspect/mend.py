@@ -13,11 +13,18 @@ from flexarm_env.recordings.recording import Recording
 
 
 def mended(recording: Recording, faults: Iterable[Fault]) -> Recording:
-    """Undo wraps, leave out readings that are none (NaN), drop signals that never move, and keep the first of glued runs."""
-    signals, end = dict(recording.signals), None
+    """Mend faults.
+
+    Wraps are undone, readings that are none become NaN, signals that never move are dropped, commands end at the limit, and of
+    glued runs the first is kept.
+    """
+    signals, command, end = dict(recording.signals), recording.command, None
     for one in faults:
         if one.kind == "glued" and end is None:
             end = one.value
+        if one.kind == "limit" and one.value is not None:
+            largest = float(np.abs(command).max()) / one.value
+            command = np.clip(command, -largest, largest)
         if one.signal not in signals:
             continue
         if one.kind == "constant":
@@ -29,7 +36,7 @@ def mended(recording: Recording, faults: Iterable[Fault]) -> Recording:
         elif one.kind == "held":
             values = signals[one.signal]
             signals[one.signal] = without(values, np.flatnonzero(np.r_[False, np.diff(values) == 0.0]))
-    left = replace(recording, signals=signals)
+    left = replace(recording, signals=signals, command=command)
     return left if end is None else left.part(0.0, end)
 
 

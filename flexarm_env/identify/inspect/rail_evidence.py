@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
-from flexarm_env.identify.inspect.series import Floats, Series
+from flexarm_env.identify.inspect.series import Floats, Integers, Series, partners
 from flexarm_env.identify.settings import Inspecting
-
-#: Signals of the hub: where one of them rests, so does the other.
-_HUB = ("arm_angle", "motor_speed")
 
 
 def stands_at(end: int, signal: str, series: dict[str, Series], numbers: Inspecting) -> bool:
@@ -26,10 +24,14 @@ def stands_at(end: int, signal: str, series: dict[str, Series], numbers: Inspect
         return False
     follow = count - int(at_end.sum())
     repeated = _evidence(follow, count, one.most_repeats(values < values.max(), numbers)) > numbers.evidence
+    standing = one.rows[values == values.max()]
+    others = partners(signal, series)
     if one.flicker > numbers.flickers:
-        return repeated or _piles_up(values, one.step, count, numbers)
+        still = all(other.stands_still(standing, numbers) for other in others)
+        near_zero = abs(values.max()) < numbers.near_zero * np.ptp(values)
+        return (repeated or _piles_up(values, one.step, count, numbers)) and not (still and (bool(others) or near_zero))
     episodes = starts[at_end & (lengths >= numbers.least_run)]
-    return repeated and _is_cut(values, episodes, one.step, numbers) and not _rests(end, signal, series, numbers)
+    return repeated and _is_cut(values, episodes, one.step, numbers) and not _rests(one, values.max(), standing, others, numbers)
 
 
 def _piles_up(values: Floats, step: float, count: int, numbers: Inspecting) -> bool:
@@ -54,16 +56,20 @@ def _is_cut(values: Floats, episodes: np.ndarray, step: float, numbers: Inspecti
     return bool(slopes.size) and float(np.median(slopes)) > numbers.cut_slope * step
 
 
-def _rests(end: int, signal: str, series: dict[str, Series], numbers: Inspecting) -> bool:
-    """Whether the hub rests while a signal stands at its extreme, so that the extreme is a reading at rest."""
-    one = series[signal]
-    standing = one.rows[end * one.values == (end * one.values).max()]
-    level = abs(float(one.values[np.searchsorted(one.rows, standing[0])]))
-    if level < numbers.near_zero * np.ptp(one.values):
+def _rests(series: Series, level: float, standing: Integers, others: Sequence[Series], numbers: Inspecting) -> bool:
+    """Whether the hub rests while a signal stands at its extreme, so that the extreme is a reading at rest.
+
+    Args:
+        series: of the signal.
+        level: its extreme.
+        standing: samples at which it stands there.
+        others: that rest where the signal does.
+        numbers: of the inspection.
+    """
+    if abs(level) < numbers.near_zero * np.ptp(series.values):
         return True
-    partners = [s for s in series if s != signal and (signal not in _HUB or s in _HUB)]
     quiet = []
-    for other in (series[s] for s in partners):
+    for other in others:
         known = np.isin(other.rows, standing)
         limit = numbers.quiet * max(other.noise, other.step)
         quiet.append(bool(known.any()) and float(np.std(other.values[known])) < limit)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,10 @@ from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
+
+
+#: Signals of the hub: where one of them rests, so does the other.
+_HUB = ("arm_angle", "motor_speed")
 
 
 @dataclass(frozen=True)
@@ -59,6 +64,11 @@ class Series:
         starts = np.flatnonzero(np.r_[True, self.changes != 0.0]).astype(np.int64)
         return starts, np.diff(np.r_[starts, len(self)]).astype(np.int64)
 
+    def stands_still(self, rows: Integers, numbers: Inspecting) -> bool:
+        """Whether the signal mostly repeats its readings at some samples, as without noise at rest."""
+        same = self.changes[np.isin(self.rows[1:], rows)] == 0.0
+        return not same.size or float(same.mean()) > numbers.most_changing
+
     def most_repeats(self, elsewhere: NDArray[np.bool_], numbers: Inspecting) -> float:
         """Compute the largest share of repeated readings in any stretch of the signal.
 
@@ -73,3 +83,8 @@ class Series:
         enough = sums[1] >= numbers.fewest_at_rail
         shares = sums[0][enough] / sums[1][enough]
         return float(np.clip(shares.max() if shares.size else 1.0, numbers.least_repeats, 1.0))
+
+
+def partners(signal: str, series: Mapping[str, Series]) -> list[Series]:
+    """List the signals that rest where a signal does: those of the hub for one of the hub, else all others."""
+    return [one for other, one in series.items() if other != signal and (signal not in _HUB or other in _HUB)]

@@ -56,7 +56,10 @@ def excursions(series: Series, numbers: Inspecting) -> Stretches:
     level = 0.5 * (values[:-2] + values[2:])
     wild = (np.abs(height) > least_height(series, numbers)) & (lengths[1:-1] <= numbers.longest_loss * len(series))
     chosen = np.flatnonzero(wild) + 1
-    return Stretches(starts[chosen], lengths[chosen], values[chosen] - level[chosen - 1])
+    found = Stretches(starts[chosen], lengths[chosen], values[chosen] - level[chosen - 1])
+    others = np.delete(np.abs(series.changes), np.r_[found.first - 1, found.first + found.length - 1])
+    # A signal that is sampled too slowly for its motion changes as much elsewhere.
+    return found.where(np.abs(height[chosen - 1]) > numbers.wild_largest * float(others.max(initial=0.0)))
 
 
 def split(series: Series, numbers: Inspecting) -> tuple[Stretches, Stretches]:

@@ -46,10 +46,12 @@ def wraps(series: Series, is_angle: bool, numbers: Inspecting) -> tuple[Integers
         return none, 0.0
     jumps = np.abs(changes[steps] - _slopes(changes, steps))
     modulus = float(np.median(jumps))
-    usual = float(np.quantile(np.abs(np.delete(changes, steps)), numbers.usual)) if len(changes) > len(steps) else 0.0
+    others = np.abs(np.delete(changes, steps))
+    usual = float(np.quantile(others, numbers.usual)) if others.size else 0.0
     slack = max(numbers.same_jump * modulus, 2 * usual)
-    if np.abs(jumps - modulus).max() > slack or extent > modulus + slack or usual > numbers.smooth * modulus:
+    if np.abs(jumps - modulus).max() > slack or extent > modulus + slack or others.max(initial=0.0) > numbers.smooth * modulus:
         return none, 0.0
+    modulus = max(modulus, extent)  # all readings lie within it
     is_turn = is_angle and abs(modulus - _TURN) < slack
     if is_turn and abs(modulus - _TURN) < numbers.same_jump * _TURN:
         modulus = _TURN

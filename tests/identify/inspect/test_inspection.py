@@ -223,3 +223,9 @@ def test_a_noisy_reading_that_stands_still_is_lost(thesis, square, signal, lengt
     assert (fault.kind, fault.signal, fault.value) == ("dropout", signal, values[1000])
     assert set(range(1000, 1000 + length)) <= set(fault.rows)
     assert "stands still" in fault.message
+
+
+def test_a_hub_that_is_stuck_while_the_beam_rings_is_sound(thesis, square):
+    """Encoder and tachometer without noise stand still together."""
+    signals = square.signals | {"arm_angle": np.zeros(len(square)), "motor_speed": np.zeros(len(square))}
+    assert inspect_recordings(thesis, [replace(square, signals=signals)]).faults == ()
