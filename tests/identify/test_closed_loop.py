@@ -213,7 +213,9 @@ def test_the_closed_loop_takes_the_free_run_s_place():
     better = Model((), None, Score(1.1, 3e4, 1.3), Score(1.1, 3e4, 1.3))
     assert criteria.explains(better)
     assert not criteria.explains(replace(better, score=Score(1.1, 3e4)))
-    assert criteria.measure([Score(4.0, 1e4, 9.0)])(Score(4.0, 1e4, 9.0)) == pytest.approx(80.0)
+    far_off = [Score(4.0, 1e4, 9.0)]
+    assert criteria.measure(far_off)(Score(4.0, 1e4, 9.0)) == pytest.approx((15.0 * 80.0) ** 0.5)
+    assert criteria.measure(far_off)(Score(4.0, 9.0)) == pytest.approx(80.0)
 
 
 def test_scores_hold_both_only_where_the_loop_is_known():

@@ -82,6 +82,14 @@ class Score:
         """Geometric mean of both."""
         return math.sqrt(self.excess * self.whole_run_excess)
 
+    @property
+    def far_off_excess(self) -> float:
+        """Excess by which models far from the noise are compared.
+
+        A free run adds up the errors of a model and decides alone. A controller hides them, so windows decide with the loop.
+        """
+        return self.whole_run_excess if self.closed_loop is None else self.mean_excess
+
     def is_better_than(self, other: Score) -> bool:
         """Whether the product of both errors is smaller."""
         return self.windows * self.whole_run < other.windows * other.whole_run

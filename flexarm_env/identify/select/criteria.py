@@ -98,7 +98,7 @@ class ThresholdCriteria:
         """
         best = min(s.windows for s in scores)
         if self.judges_whole_run and best > self.settings.errors.far_off:
-            return lambda s: s.whole_run_excess
+            return lambda s: s.far_off_excess
         if self.judges_whole_run and best > self.settings.errors.close:
             return lambda s: s.mean_excess
         return lambda s: s.excess
