@@ -13,20 +13,24 @@ from typing import Any
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
-from benchmarks import diagnosis, environments, plant, report, start  # noqa: E402
+from benchmarks import diagnosis, environments, faults, plant, report, start  # noqa: E402
 
 PARTS = {"plant": plant, "start": start, "diagnosis": diagnosis, "environments": environments}
+#: Left out of a whole run, and with options of its own.
+ON_REQUEST = {"faults": faults}
 OUTPUT = Path(__file__).resolve().parent.parent / "results" / "bench" / "bench.json"
 
 
 def main() -> None:
     """Run the requested parts, all by default."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    for name, part in PARTS.items():
+    for name, part in (PARTS | ON_REQUEST).items():
         parser.add_argument(f"--{name}", action="store_true", help=f"only: {part.__doc__}")
     parser.add_argument("--output", type=Path, help="the JSON file; results/bench/bench.json after a whole run")
+    parser.add_argument("--seed", type=int, default=faults.SEED, help="with --faults: of the cases; 1 has been looked at")
+    parser.add_argument("--count", type=int, default=faults.COUNT, help="with --faults: cases")
     asked = parser.parse_args()
-    names = [name for name in PARTS if getattr(asked, name)] or list(PARTS)
+    names = [name for name in PARTS if getattr(asked, name)] or ([] if asked.faults else list(PARTS))
     began = time.perf_counter()
 
     def say(text: str) -> None:
@@ -35,6 +39,8 @@ def main() -> None:
     found: dict[str, Any] = {}
     for name in names:
         found |= PARTS[name].measure(say)
+    if asked.faults:
+        found |= faults.measure(say, asked.seed, asked.count)
     report.show(found)
     output = asked.output or (OUTPUT if len(names) == len(PARTS) else None)
     if output is not None:

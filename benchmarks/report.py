@@ -55,6 +55,9 @@ GOALS = (
     Goal("white_over_envpool", "… white noise", "×", least=1.5),
     Goal("mujoco_over_batch", "… over MuJoCo's 4 segments at 1 ms, smooth actions", "×", least=25),
     Goal("threads_smooth", "… two threads over one, smooth actions", "×", least=1.7),
+    Goal("faults_named_percent", "faults of recordings named right", "%", least=97),
+    Goal("faults_false_alarms", "false alarms on sound recordings", most=0),
+    Goal("inspection_s", "inspection of three recordings of 10 s", "s", most=1),
     Goal("ppo_env_percent", "share of PPO's time that the environments take", "%", most=5),
 )
 

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from flexarm_env.identify.diagnose import diagnose
     from flexarm_env.identify.explain.compare import compare
     from flexarm_env.identify.fit import add, fit
+    from flexarm_env.identify.inspect.inspection import inspect_recordings
     from flexarm_env.recordings.recording import Recording
     from flexarm_env.sensors import Sensor
 
@@ -31,6 +32,7 @@ _PLACES = {
     "compare": "identify.explain.compare",
     "diagnose": "identify.diagnose",
     "fit": "identify.fit",
+    "inspect_recordings": "identify.inspect.inspection",
     "simulate": "experiments.simulate",
 }
 
@@ -45,6 +47,7 @@ __all__ = [
     "compare",
     "diagnose",
     "fit",
+    "inspect_recordings",
     "simulate",
 ]
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flexarm_env.arm_file import arm_from_table, read_arm, write_arm
+from flexarm_env.control.law import ControlLaw
 from flexarm_env.display import Shown
 from flexarm_env.effects import Catalogue, Effect, catalogue
 from flexarm_env.effects.catalogue import LAW_PORTS
@@ -40,6 +41,7 @@ class Arm(Shown):
         fixed: paths of constants that a fit keeps.
         auto_noise: signals whose noise is estimated from the recordings, `noise = "auto"` in the file. Their noise is 0 here.
         columns: the map of columns of foreign recordings, or None.
+        controller: the law under which recordings with a reference were made, or None.
         fitted: value, low and high end of the 90 % interval and unit of each fitted path.
         origin: recordings, command and seed of the fit.
         description: one line about the arm.
@@ -62,6 +64,7 @@ class Arm(Shown):
     fixed: Sequence[str] = ()
     auto_noise: Sequence[str] = ()
     columns: Mapping[str, Any] | None = None
+    controller: ControlLaw | None = None
     fitted: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     origin: Mapping[str, Any] = field(default_factory=dict)
     description: str = ""

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from flexarm_env.control.table import law_from_table, law_table
 from flexarm_env.effects import Catalogue
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import read_toml, write_whole
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 #: Noise of a sensor that is estimated from the recordings.
 AUTO = "auto"
-TOP = ("name", "description", "fixed", "drive", "hub", "beam", "sensors", "effects", "columns", "fitted", "origin")
+TOP = ("name", "description", "fixed", "drive", "hub", "beam", "sensors", "effects", "columns", "controller", "fitted", "origin")
 
 
 def arm_folders() -> list[Path]:
@@ -95,12 +96,14 @@ def arm_from_table(kind: type[Arm], table: Mapping[str, Any], name: str, known: 
         fixed=_fixed(table.get("fixed", []), constants, sensors),
         auto_noise=auto_noise,
         columns=_table(table, "columns") if "columns" in table else None,
+        controller=law_from_table(table["controller"], command) if "controller" in table else None,
         fitted=_table(table, "fitted", {}),
         origin=_table(table, "origin", {}),
         description=str(table.get("description", "")),
         known=known,
     )
     _check_needs(arm)
+    _check_controller(arm)
     for effect, given in _table(table, "effects", {}).items():
         parameters = known[effect].parameters
         if not isinstance(given, Mapping):
@@ -197,6 +200,12 @@ def _check_needs(arm: Arm) -> None:
             raise InputError(f"sensors.{signal}.position lies beyond the beam's end at {arm.constants['beam']['length']:g} m")
 
 
+def _check_controller(arm: Arm) -> None:
+    for signal in arm.controller.signals if arm.controller else ():
+        if signal not in arm.sensors:
+            raise InputError(f"controller.{signal} feeds back a signal that the arm does not measure: add [sensors.{signal}]")
+
+
 def write_arm(arm: Arm, path: Path) -> None:
     """Write an arm file, completely or not at all.
 
@@ -250,7 +259,8 @@ def arm_text(arm: Arm) -> str:
         effects[name] = table
     if arm.effects:
         document["effects"] = effects
-    for key, extra in (("columns", arm.columns), ("fitted", arm.fitted), ("origin", arm.origin)):
+    controller = law_table(arm.controller, arm.input) if arm.controller else None
+    for key, extra in (("columns", arm.columns), ("controller", controller), ("fitted", arm.fitted), ("origin", arm.origin)):
         if extra:
             document[key] = extra
     return tomlkit.dumps(document)

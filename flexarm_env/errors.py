@@ -1,4 +1,4 @@
-"""The exception for bad input, and the hint for a misspelt word."""
+"""The exceptions for bad input, and the hint for a misspelt word."""
 
 from __future__ import annotations
 
@@ -8,6 +8,10 @@ from collections.abc import Iterable
 
 class InputError(ValueError):
     """Bad input from a user, in one line: the input, the allowed values, and the remedy."""
+
+
+class UnknownArgument(InputError, TypeError):
+    """A keyword argument that a function does not have: also the TypeError with which Python itself refuses one."""
 
 
 def did_you_mean(word: str, allowed: Iterable[str]) -> str:

@@ -10,12 +10,24 @@ import gymnasium as gym
 import numpy as np
 from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
-from stable_baselines3.common.vec_env import VecEnv
 
+from flexarm_env.env.infos import Infos, Step
 from flexarm_env.env.layout import SAMPLE_COUNT
+from flexarm_env.errors import InputError
 from flexarm_env.vector_env import FlexArmVectorEnv
 
+try:
+    from stable_baselines3.common.vec_env import VecEnv
+except ModuleNotFoundError as error:
+    if error.name != "stable_baselines3":  # it is installed, and lacks something itself
+        raise
+    line = "flexarm_env.sb3 needs Stable-Baselines3: pip install 'flexarm-env[train]'"
+    raise ModuleNotFoundError(line, name=error.name) from None
+
 Array = NDArray[Any]
+
+#: Part of the info of a step that ends no episode.
+GOING_ON = {"TimeLimit.truncated": False}
 
 
 def make_vec(id: str, num_envs: int = 1, seed: int | None = None, **arguments: Any) -> FlexArmVecEnv:
@@ -49,8 +61,8 @@ def make_vec(id: str, num_envs: int = 1, seed: int | None = None, **arguments: A
 class FlexArmVecEnv(VecEnv):
     """A FlexArmVectorEnv that starts the next episode in the step that ends one.
 
-    Infos are empty except at the end of an episode: there they hold `terminal_observation`, `TimeLimit.truncated` and the
-    `episode` statistics that SB3 logs. `envs.batch.info()` has the true state of all arms at once.
+    Infos have the keys of the single environment's. At the end of an episode they also hold `terminal_observation`,
+    `TimeLimit.truncated` and the `episode` statistics of a Monitor. `envs.batch.info()` has the true state of all arms at once.
     """
 
     def __init__(self, envs: FlexArmVectorEnv) -> None:
@@ -61,17 +73,38 @@ class FlexArmVecEnv(VecEnv):
         self.actions: Array = np.zeros((envs.num_envs, 1))
         self.next_seed: int | None = None
 
+    def __getstate__(self) -> dict[str, Any]:
+        # Another process has another clock.
+        return vars(self) | {"began": time.perf_counter() - self.began}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state, began=time.perf_counter() - state["began"])
+
     def seed(self, seed: int | None = None) -> list[int | None]:
         """Set the seed of the next reset: arm i gets seed + i."""
         self.next_seed = seed
         return [None if seed is None else seed + i for i in range(self.num_envs)]
 
     def reset(self) -> Array:
-        """Start an episode of every arm; return observations (arms, signals + 1)."""
-        observations, _ = self.envs.reset(seed=self.next_seed)
+        """Start an episode of every arm; return observations (arms, signals + 1).
+
+        Raises:
+            InputError: for options, as set_options takes them, that do not exist or do not make sense.
+        """
+        observations, _ = self.envs.reset(seed=self.next_seed, options=self._given_options())
         self.next_seed = None
+        self._reset_options()
         self.returns[:] = 0.0
+        outcome = self.envs.batch.outcome.T.tolist()
+        self.reset_infos = [self.envs.batch.info_of(column) for column in outcome]
         return observations
+
+    def _given_options(self) -> dict[str, Any] | None:
+        """Collect the options of the next reset, a list of one value for each arm under each name."""
+        names = {tuple(sorted(each)) for each in self._options}
+        if len(names) > 1:
+            raise InputError(f"options of the arms have different names: {sorted(names)}; give all arms the same ones")
+        return {name: [each[name] for each in self._options] for name in names.pop()} or None
 
     def step_async(self, actions: Array) -> None:
         """Set the actions (arms, 1) of the next step."""
@@ -83,17 +116,20 @@ class FlexArmVecEnv(VecEnv):
         rewards, terminated, truncated = envs.move(self.actions)
         done, last = envs.over, envs.batch.observations
         self.returns += rewards
-        infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        infos = Infos(Step(GOING_ON, envs.batch.outcome.copy(), envs.batch.info_rows, envs.batch.info_of))
+        ended = np.flatnonzero(done).tolist()
         elapsed = round(time.perf_counter() - self.began, 6)
-        for i in np.flatnonzero(done):
-            infos[i] = {
+        for i in ended:
+            infos[i] |= {
                 "terminal_observation": last[i].copy(),
                 "TimeLimit.truncated": bool(truncated[i] and not terminated[i]),
                 "episode": {"r": float(self.returns[i]), "l": int(envs.batch.outcome[SAMPLE_COUNT, i]), "t": elapsed},
             }
             self.returns[i] = 0.0
         envs.restart()
-        return last.copy(), rewards.astype(np.float32), done, infos
+        for i in ended:
+            self.reset_infos[i] = envs.batch.info_of(envs.batch.outcome[:, i].tolist())
+        return last.copy(), rewards.astype(np.float32), done, infos  # type: ignore[return-value]
 
     def close(self) -> None:
         """Close the arms' environment."""
@@ -113,9 +149,11 @@ class FlexArmVecEnv(VecEnv):
         return [getattr(self.envs, method_name)(i, *args, **kwargs) for i in self._get_indices(indices)]
 
     def env_is_wrapped(self, wrapper_class: type, indices: Any = None) -> list[bool]:
-        """Return False for each arm: there are no wrappers, and episodes are counted without a Monitor."""
-        return [False for _ in self._get_indices(indices)]
+        """Return whether the wrapper is a Monitor, the work of which is done here; there are no others."""
+        from stable_baselines3.common.monitor import Monitor
+
+        return [wrapper_class is Monitor for _ in self._get_indices(indices)]
 
     def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
-        """Return None for each arm: single environments draw pictures."""
-        return [None] * self.num_envs
+        """Draw each arm (height, width, 3), or return None for each without a render mode."""
+        return [None] * self.num_envs if self.render_mode is None else list(self.envs.render() or ())

@@ -8,6 +8,7 @@ from typing import Any, Unpack
 
 import gymnasium as gym
 import numpy as np
+from gymnasium.envs.registration import EnvSpec
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
@@ -17,9 +18,13 @@ from flexarm_env.env.arguments import ArmLike, EnvArguments, find_prior, make_se
 from flexarm_env.env.batch import Batch
 from flexarm_env.env.flexarm import spaces_of
 from flexarm_env.env.layout import REWARD, SAMPLE_COUNT, TERMINATED
+from flexarm_env.env.spec import plain_spec
+from flexarm_env.env.start import Start, find_start
+from flexarm_env.env.state import State
 from flexarm_env.env.task_envs import refuse_task
+from flexarm_env.env.view import View
 from flexarm_env.errors import InputError
-from flexarm_env.tasks import TASKS, Task
+from flexarm_env.tasks import CONTROL_RATE, TASKS, Task
 
 Array = NDArray[Any]
 
@@ -31,18 +36,22 @@ TASK_OF_CLASS = {f"{task.title}VectorEnv": task for task in TASKS.values()}
 class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
     """Arms at one task; arm i after reset(seed=s) is the single environment after reset(seed=s + i), bit for bit.
 
+    As a single environment, it can be copied, pickled, and set to a state that it had.
+
     Args:
         num_envs: arms.
         task: its name, or a Task.
         arm: name of a shipped arm, path of an arm file, or an Arm.
-        max_episode_steps: after which an episode is truncated; the task's duration by default.
+        max_episode_steps: after which an episode is truncated; those of its duration by default.
         autoreset_mode: next step, same step or disabled, see gymnasium.vector.AutoresetMode.
         threads: over which the arms are spread; more than one pays from some hundred arms on.
-        render_mode: only None; single environments draw pictures.
-        arguments: prior, randomise, vary, disturb, control_rate, physical: see EnvArguments; drawn for each arm and episode.
+        render_mode: "rgb_array" or None.
+        arguments: prior, randomise, vary, disturb, control_rate, duration, physical: see EnvArguments; drawn for each arm and
+            episode.
 
     Raises:
-        InputError: for an argument that does not exist or does not make sense.
+        UnknownArgument: for an argument that does not exist.
+        InputError: for one that does not make sense.
 
     Examples:
         >>> envs = FlexArmVectorEnv(64, "track", randomise={"payload.mass": (0.0, 0.3)})
@@ -52,6 +61,9 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         ((64, 5), (64,), (64,))
         >>> envs.close()
     """
+
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": int(CONTROL_RATE)}  # noqa: RUF012
+    _spec: EnvSpec | None = None
 
     def __init__(
         self,
@@ -68,13 +80,14 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         for name, value in (("num_envs", num_envs), ("threads", threads), ("max_episode_steps", max_episode_steps)):
             if value is not None and not (isinstance(value, int | np.integer) and value >= 1):
                 raise InputError(f"{name} = {value!r}; give a whole number from 1 up")
-        if render_mode is not None:
-            raise InputError("render_mode: a vector environment draws nothing; use gymnasium.make for pictures")
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise InputError(f"render_mode = {render_mode!r}; a vector environment has 'rgb_array' and None")
         self.setup = make_setup(task, arm, arguments, FURTHER_ARGUMENTS)
         self.prior = find_prior(arm, arguments)
         self.autoreset_mode = _mode(autoreset_mode)
-        self.metadata = {"autoreset_mode": self.autoreset_mode, "render_modes": []}
-        self.num_envs, self.render_mode = int(num_envs), None
+        self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode, "render_fps": self.setup.frame_rate}
+        self.num_envs, self.render_mode = int(num_envs), render_mode
+        self.view: View | None = None
         self.max_episode_steps = max_episode_steps or self.setup.samples
         self.batch = Batch(self.setup, self.num_envs, int(threads))
         #: Names under which an info marks the arms that it is about, see gymnasium.vector.VectorEnv.
@@ -94,24 +107,69 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
 
         Args:
             seed: arm i gets seed + i; or one for each; or none, to go on.
-            options: "reset_mask", a boolean for each arm.
+            options: "reset_mask", a boolean for each arm; "state" and "target" as of the single environment, one for all or one
+                for each arm, or a State of all arms.
 
         Raises:
-            InputError: for seeds or a mask of another length.
+            InputError: for an option that does not exist or does not make sense, seeds or a mask of another length, or seeds
+                beside a State.
         """
-        if not isinstance(options, dict | None):
-            raise InputError(f'options = {options!r}; give a dict such as {{"reset_mask": mask}}, or None')
-        seeds = self._seeds(seed)
+        start = find_start(options, self.setup, (self.num_envs, self.batch.plant.states), ("reset_mask",))
+        start.check_seed(seed)
         mask = (options or {}).get("reset_mask", self.all)
         if np.shape(mask) != (self.num_envs,) or np.asarray(mask).dtype != bool:
             raise InputError(f"reset_mask of shape {np.shape(mask)}; give {self.num_envs} booleans")
         if not (self.started or np.all(mask)):
             raise InputError("reset_mask in the first reset: every arm has to be started once")
         chosen = self.every[np.asarray(mask)]
-        self.batch.reset(chosen, [seeds[i] for i in chosen])
+        if start.state is not None:
+            return self._go_on(start, chosen)
+        seeds = self._seeds(seed)
+        self.batch.reset(chosen, [seeds[i] for i in chosen], start)
         self.over[chosen] = False
         self.started = True
         return self.batch.observations.copy(), self._info(np.asarray(mask))
+
+    def _go_on(self, start: Start, chosen: Array) -> tuple[Array, dict[str, Any]]:
+        """Go on from a state of all arms, with other targets where they are given."""
+        if len(chosen) < self.num_envs:
+            raise InputError("reset_mask beside a State, which is one of all arms: leave out the mask")
+        self.set_state(start.state)
+        self.batch.aim(chosen, start)
+        return self.batch.observations.copy(), self._info(self.all)
+
+    def state(self) -> State:
+        """Copy everything on which the next steps depend; `state().physical` has the [q, q̇, extra] of each arm."""
+        return self.batch.state()
+
+    def set_state(self, state: Any) -> None:
+        """Go on from a state that this environment, or one with the same arguments, has returned.
+
+        Raises:
+            InputError: for a state of another environment or arm, or what is none.
+        """
+        self.batch.set_state(state)
+        self.over = (self.batch.outcome[TERMINATED] > 0.0) | (self.batch.outcome[SAMPLE_COUNT] >= self.max_episode_steps)
+        self.started = True
+
+    @property
+    def spec(self) -> EnvSpec | None:
+        """Registration from which `gymnasium.make_vec` makes an equal environment, in values that JSON has."""
+        return self._spec
+
+    @spec.setter
+    def spec(self, given: EnvSpec | None) -> None:
+        self._spec = plain_spec(given, self.max_episode_steps)
+
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
+        """Draw each arm in its present shape (height, width, 3)."""
+        if self.render_mode is None:
+            gym.logger.warn('render() draws nothing without a mode: gym.make_vec(..., render_mode="rgb_array")')
+            return None
+        if self.view is None:
+            self.view = View(self.setup, "rgb_array", self.setup.rate)
+        pictures = (self.view.draw(self.batch, arm) for arm in range(self.num_envs))
+        return tuple(picture for picture in pictures if picture is not None)
 
     def _seeds(self, seed: int | Sequence[int | None] | None) -> list[int | None]:
         if seed is None:
@@ -132,7 +190,7 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
 
         Raises:
             gymnasium.error.ResetNeeded: before the first reset, or for arms after the end of their episode that need a reset.
-            InputError: for actions of another shape, or that are not numbers.
+            InputError: for actions of another shape, that are not numbers, or beyond ±1e6; others are clipped.
         """
         before = self.over
         if self.autoreset_mode is AutoresetMode.DISABLED and before.any():
@@ -204,6 +262,7 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
     def close_extras(self, **kwargs: Any) -> None:
         """Dismiss the threads."""
         self.batch.close()
+        self.view = None
 
 
 def _mode(given: str | AutoresetMode) -> AutoresetMode:

@@ -25,7 +25,7 @@ HEAVY = {"torch", "stable_baselines3", "sb3_contrib", "plotly", "matplotlib", "p
 LAYERS = (
     {"errors"},
     {"units", "parameters", "files", "generated", "display"},
-    {"arm", "arm_file", "plant", "effects", "sensors", "linear", "recordings", "thesis_drive"},
+    {"arm", "arm_file", "plant", "effects", "sensors", "control", "linear", "recordings", "thesis_drive"},
     {"experiments"},
     {"identify", "controllers", "tasks", "render", "env"},
     {"vector_env", "sb3", "pictures", "registration"},
@@ -154,7 +154,8 @@ def test_a_right_import_passes(tmp_path, place, line):
 
 def test_every_import_is_declared():
     extras = METADATA["optional-dependencies"]
-    requirements = [*METADATA["dependencies"], *extras["plots"], *extras["lab"], *extras["render"], *extras["train"]]
+    requirements = [*METADATA["dependencies"], *extras["plots"], *extras["lab"], *extras["logs"]]
+    requirements += [*extras["render"], *extras["train"]]
     declared = {re.match(r"[\w.-]+", line)[0].lower() for line in requirements}
     installed = importlib.metadata.packages_distributions()
     files = (PROJECT / PACKAGE).rglob("*.py")

@@ -22,6 +22,7 @@ IDENTIFY_LAYERS = (
     {"replay"},
     {"calibrate"},
     {"select"},
+    {"inspect"},
     {"explain"},
     {"results", "origin"},
     {"fit", "conclude"},

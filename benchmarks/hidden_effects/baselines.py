@@ -64,7 +64,7 @@ def _best(calibrator: Calibrator, found: Calibration) -> tuple[str, Calibration]
 def _criterion(calibrator: Calibrator, found: Calibration) -> float:
     """Compute BIC: the sum of squared errors in windows over the noise, plus the penalty on parameters."""
     data = calibrator.dataset
-    count = sum(int(run.train.sum()) for run in data.runs) * len(data.signals)
+    count = data.readings(held_out=False)
     return count * calibrator.score(found.arm, held_out=False).windows ** 2 + len(found.parameters) * math.log(count)
 
 

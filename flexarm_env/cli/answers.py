@@ -8,6 +8,12 @@ from typing import Any
 
 from rich.console import RenderableType
 
+from flexarm_env.arm import Arm
+from flexarm_env.files import write_whole
+from flexarm_env.identify.conclude import at_fault
+from flexarm_env.identify.inspect.restart import restart
+from flexarm_env.identify.settings import SETTINGS
+from flexarm_env.recordings.clock import RestartError
 from flexarm_env.recordings.recording import Recording
 from flexarm_env.terminal import outputs, tables
 from flexarm_env.terminal.provenance import provenance
@@ -26,3 +32,22 @@ def hand_out(
     tables.show(tables.console(to_stderr=json == outputs.STDOUT), *parts)
     if json is not None:
         outputs.write_json(json, content | provenance(command, arm, recordings, seed))
+
+
+def answer_restart(error: RestartError, arm: Arm, named: str, seed: int, json: Path | None, report: Path | None) -> None:
+    """Diagnose a recording that holds several runs: there is nothing to replay, but a fault to name.
+
+    Args:
+        error: of the file.
+        arm: the model.
+        named: its file or name.
+        seed: recorded with the result.
+        json: for the JSON.
+        report: for the page.
+    """
+    result = at_fault(arm, [restart(error)], SETTINGS)
+    hand_out("diagnose", named, [], seed, json, result.as_json(), tables.diagnosis(result))
+    if report is not None:
+        from flexarm_env.pictures.page import page_of_faults
+
+        write_whole(report, page_of_faults(result))

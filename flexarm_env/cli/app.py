@@ -36,6 +36,33 @@ def _all(
 
 
 @app.command()
+def inspect(
+    recordings: Recordings,
+    arm: ArmName = "thesis",
+    columns: Columns = None,
+    effects: Effects = None,
+    report: Report = None,
+    json: Json = None,
+) -> None:
+    """Look at recordings first: signals, faults of sensors and units, and what they can show. Exit code 1 for a fault."""
+    given = arguments.Given(recordings, arm, columns, effects)
+    model, runs = given.load(json, report)
+    from flexarm_env.cli.answers import hand_out
+    from flexarm_env.terminal import identification
+    from flexarm_env.terminal.inspection_tables import inspection
+    from flexarm_env.terminal.provenance import provenance
+
+    found = identification.inspect(model, runs)
+    hand_out("inspect", arm, runs, None, json, found.as_json(), inspection(found))
+    if report is not None:
+        from flexarm_env.terminal.inspection_report import write_inspection
+
+        write_inspection(report, found, given.command_line("inspect") | provenance("inspect", arm, runs, None))
+    if found.inspection.faults:
+        raise typer.Exit(1)
+
+
+@app.command()
 def compare(
     recordings: Recordings,
     arm: ArmName = "thesis",
@@ -86,8 +113,14 @@ def diagnose(
         show(json)
         return
     given = arguments.Given(arguments.required(recordings, "diagnose"), arm, columns, effects)
-    model, runs = given.load(json, report, save, next_run)
-    from flexarm_env.cli.answers import hand_out
+    from flexarm_env.cli.answers import answer_restart, hand_out
+    from flexarm_env.recordings.clock import RestartError
+
+    try:
+        model, runs = given.load(json, report, save, next_run)
+    except RestartError as error:
+        answer_restart(error, arguments.load_arm(arm, effects), arm, seed, json, report)
+        raise typer.Exit(1) from None
     from flexarm_env.files import write_whole
     from flexarm_env.terminal import identification, tables
     from flexarm_env.terminal.provenance import provenance
@@ -98,12 +131,14 @@ def diagnose(
     elif next_run is not None:
         typer.echo(f"No next run is proposed, so {next_run} is not written.", err=True)
     hand_out("diagnose", arm, runs, seed, json, result.as_json(), tables.diagnosis(result))
-    if save is not None:
+    if save is not None and result.recordings:
+        typer.echo(f"The arm was not judged by these recordings, so {save} is not written.", err=True)
+    elif save is not None:
         result.arm.save(save)
     if report is not None:
         made = given.command_line("diagnose", seed, rate) | provenance("diagnose", arm, runs, seed)
         identification.write_page(report, runs, identification.compare(result.nominal, runs, rate), result, made)
-    if result.verdict in ("unknown", "insufficient_data"):
+    if result.verdict in ("unknown", "insufficient_data", "recordings"):
         raise typer.Exit(1)
 
 
@@ -126,6 +161,7 @@ def add(
     from flexarm_env.effects.catalogue import load_effect
     from flexarm_env.terminal import identification, plain_data, tables
 
+    arguments.show_faults(identification.faults(model, runs))
     result = identification.add(load_effect(effect).name if own else effect, model, runs, seed, rate)
     hand_out("add", arm, runs, seed, json, plain_data.of_addition(result), tables.addition(result))
     if save is not None:
@@ -151,6 +187,7 @@ def fit(
     from flexarm_env.cli.answers import hand_out
     from flexarm_env.terminal import identification, plain_data, tables
 
+    arguments.show_faults(identification.faults(model, runs))
     result = identification.fit(model, runs, seed, rate)
     hand_out("fit", arm, runs, seed, json, plain_data.of_fit(result), tables.fit(result))
     if save is not None:
@@ -195,6 +232,15 @@ def effects(
 
 
 @app.command()
+def envs(arm: ArmName = "thesis", json: Json = None) -> None:
+    """List the environments with an arm: task, observation, action, length of an episode."""
+    arguments.check(json)
+    from flexarm_env.cli import environments
+
+    environments.show(arm, json)
+
+
+@app.command()
 def demo(
     output: Annotated[Path, typer.Option(metavar="FOLDER", help="Where pictures, page and numbers go.")] = Path("results/demo"),
     seed: Seed = 0,
@@ -223,7 +269,8 @@ def thesis(
 @app.command()
 def lab(
     recordings: Annotated[
-        list[Path] | None, typer.Argument(metavar="[RECORDING…]", help="CSV or .mat files, or folders.", show_default=False)
+        list[Path] | None,
+        typer.Argument(metavar="[RECORDING…]", help="Recordings (.csv, .mat, …), or folders.", show_default=False),
     ] = None,
     arm: ArmName = "thesis-fem",
     columns: Columns = None,

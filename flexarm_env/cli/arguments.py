@@ -113,6 +113,12 @@ def show_notes(recordings: Sequence[Recording]) -> None:
             typer.echo(f"Note: {recording.source or recording.name}: {note}", err=True)
 
 
+def show_faults(faults: Sequence[str]) -> None:
+    """Print the faults of recordings on stderr, where a command goes on with them."""
+    for fault in faults:
+        typer.echo(f"Note: {fault}", err=True)
+
+
 def hint_at_save(save: Path | None) -> None:
     """Point to --save where the arm was not saved."""
     if save is None:

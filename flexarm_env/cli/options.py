@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-_RECORDINGS = typer.Argument(metavar="RECORDING…", help="CSV or .mat files, or folders of them.", show_default=False)
+_RECORDINGS = typer.Argument(metavar="RECORDING…", help="Recordings (.csv, .mat, …), or folders of them.", show_default=False)
 Recordings = Annotated[list[Path], _RECORDINGS]
 RecordingsOrNone = Annotated[list[Path] | None, _RECORDINGS]
 _ARMS = "thesis, thesis-fem, cu-flexible, cu-rigid, emps"

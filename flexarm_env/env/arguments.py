@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypedDict
@@ -11,11 +12,11 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.env.setup import Setup
 from flexarm_env.env.variation import Disturbance, Range, find_disturbance, find_variation
-from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.errors import InputError, UnknownArgument, did_you_mean
 from flexarm_env.tasks import CONTROL_RATE, Task, find_task
 
-#: Name of a shipped arm, path of an arm file, or an Arm.
-ArmLike = str | Path | Arm
+#: Name of a shipped arm, path of an arm file, an Arm, or the tables of an arm file.
+ArmLike = str | Path | Arm | Mapping[str, Any]
 
 
 class EnvArguments(TypedDict, total=False):
@@ -27,6 +28,7 @@ class EnvArguments(TypedDict, total=False):
         vary: the same as shares of the arm's own values: {"hub.inertia": 0.1} is ±10 %.
         disturb: taps and drop-outs, see Disturbance: {"tap_rate": 0.5, "tap_torque": 0.3, "dropout_rate": 1.0}.
         control_rate: steps per second [Hz]; 200 by default.
+        duration: of an episode [s]; the task's by default.
         physical: whether observations are in SI units; normalised by default.
     """
 
@@ -35,6 +37,7 @@ class EnvArguments(TypedDict, total=False):
     vary: Mapping[str, float] | None
     disturb: Disturbance | Mapping[str, float] | None
     control_rate: float
+    duration: float
     physical: bool
 
 
@@ -52,18 +55,26 @@ def make_setup(task: str | Task, arm: ArmLike, given: EnvArguments, further: Ite
         further: names of arguments that this environment has beside NAMES, for the hint at a misspelt one.
 
     Raises:
-        InputError: for an argument that does not exist or does not make sense.
+        UnknownArgument: for an argument that does not exist.
+        InputError: for one that does not make sense.
     """
     for name in given:
         if name not in EnvArguments.__annotations__:
-            raise InputError(f"unknown argument '{name}'{did_you_mean(name, (*NAMES, *further))}")
+            hint = did_you_mean(name, (*NAMES, *further))
+            raise UnknownArgument(f"the environment got an unexpected keyword argument '{name}'{hint}")
     rate, physical = given.get("control_rate", CONTROL_RATE), given.get("physical", False)
     if isinstance(rate, bool) or not isinstance(rate, int | float | np.number):
         raise InputError(f"control_rate = {rate!r}; give a number [Hz]")
     if not isinstance(physical, bool | np.bool_):
         raise InputError(f"physical = {physical!r}; give True or False")
+    duration = given.get("duration")
+    if isinstance(duration, bool) or not isinstance(duration, int | float | np.number | None):
+        raise InputError(f"duration = {duration!r}; give a number [s]")
+    found = find_task(task)
+    if duration is not None:
+        found = dataclasses.replace(found, duration=float(duration))
     drawn, variation = find_variation(find_arm(arm), given.get("randomise"), given.get("vary"))
-    return Setup(find_task(task), drawn, variation, find_disturbance(given.get("disturb")), float(rate), bool(physical))
+    return Setup(found, drawn, variation, find_disturbance(given.get("disturb")), float(rate), bool(physical))
 
 
 def find_prior(arm: ArmLike, given: EnvArguments) -> Arm:
@@ -73,13 +84,15 @@ def find_prior(arm: ArmLike, given: EnvArguments) -> Arm:
 
 
 def find_arm(arm: Any) -> Arm:
-    """Load an arm by its name or its file, or pass an arm on.
+    """Load an arm by its name or its file, build it from the tables of one, or pass an arm on.
 
     Raises:
         InputError: for anything else.
     """
     if isinstance(arm, Arm):
         return arm
+    if isinstance(arm, Mapping):
+        return Arm.from_table(arm, "given")
     if not isinstance(arm, str | Path):
         raise InputError(f"arm = {arm!r}; give a name, the path of an arm file, or an Arm")
     return Arm.load(arm)

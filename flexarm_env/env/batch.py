@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +16,8 @@ from flexarm_env.env.compose import environment_kernel
 from flexarm_env.env.draws import key_of, uniform
 from flexarm_env.env.setup import Setup, check_layouts, command_per_torque_of, sensors_of, settings_of
 from flexarm_env.env.shares import Arms
+from flexarm_env.env.start import TASK_START, Start, placed
+from flexarm_env.env.state import State, check_state
 from flexarm_env.env.threads import Crew
 from flexarm_env.env.variation import hash_of
 from flexarm_env.errors import InputError
@@ -22,6 +26,9 @@ from flexarm_env.plant.truth import TRUTH_ANGLE, TRUTH_SIZE
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
+
+#: Arrays on which the next steps of a batch depend.
+NUMBERS = ("lasting", "waiting", "seeds", "episodes", "rng_keys", "observations")
 
 
 class Batch:
@@ -43,6 +50,7 @@ class Batch:
         own: numbers of each arm (arms, COLUMNS), see layout.
         states: of the plant (arms, numbers).
         constants: of the plant (arms, numbers), or of all arms in one row.
+        lasting: all numbers of the arms but the scratch of a step.
 
     Raises:
         InputError: for an arm that no environment can have, or ranges over which it becomes another kind of arm.
@@ -57,7 +65,8 @@ class Batch:
         self.waiting, self.delayed = np.zeros((plant.delay_samples, count)), plant.delay_samples > 0
         self.seeds, self.episodes = np.zeros(count, dtype=np.uint64), np.zeros(count, dtype=np.int64)
         self.first_state: Floats | None = None
-        self._allocate(max(min(threads, count), 1))
+        self.threads = max(min(threads, count), 1)
+        self._allocate(self.threads)
 
     def _allocate(self, threads: int) -> None:
         """Make the arms' arrays, and the crew that shares them where there are several threads."""
@@ -68,8 +77,9 @@ class Batch:
         self.requested, self.applied, self.sensor_output = views["requested"], views["applied"], views["sensor_output"]
         self.history, self.states, self.constants = views["history"], views["states"], views["constants"]
         views["settings"][:], views["sensors"][:], self.constants[:] = settings_of(setup, self.limit), sensors, plant.constants
-        self.arena = arena.numbers
+        self.arena, self.lasting = arena.numbers, arena.numbers[: arena.starts["scratch"]]
         self.env_offsets, self.plant_offsets = env_offsets_of(arena), plant_offsets_of(arena, self.delayed)
+        self.target_scale = setup.scales()[-1]
         self.layout, self.rng_keys = plant.layout, np.zeros(count, dtype=np.uint64)
         self.observations = np.zeros((count, len(sensors) + 1), dtype=np.float32)
         self.first_outcome, self.first_observation = self.outcome[:, 0], self.observations[0]
@@ -79,14 +89,59 @@ class Batch:
         arms = Arms(self.arena, self.layout, self.plant_offsets, self.env_offsets, self.rng_keys, self.observations)
         self.crew = Crew(threads, count, self.step_batch, self.after_step, arms) if threads > 1 else None
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # The views of the arena, the compiled kernels and the threads are made anew.
+        return Batch, (self.setup, self.count, self.threads), (self.first_state, self.numbers())
+
+    def __setstate__(self, state: tuple[Floats | None, Mapping[str, NDArray[Any]]]) -> None:
+        self.first_state, numbers = state
+        self.restore(numbers)
+
+    def numbers(self) -> dict[str, NDArray[Any]]:
+        """Copy all numbers on which the next steps depend, by name."""
+        return {name: getattr(self, name).copy() for name in NUMBERS}
+
+    def restore(self, numbers: Mapping[str, NDArray[Any]]) -> None:
+        """Set all numbers on which the next steps depend."""
+        for name in NUMBERS:
+            getattr(self, name)[:] = numbers[name]
+
+    def physical(self, arm: int) -> Floats:
+        """Compute an arm's state [q, q̇, extra] (states,), see Plant.physical."""
+        plant = self.plant
+        plant.state[:] = self.states[arm]
+        plant.constants[:] = self.constants[arm if len(self.constants) > 1 else 0]
+        return plant.physical()
+
+    def state(self) -> State:
+        """Copy the state of all arms, with physical states (arms, states)."""
+        return State(self.setup.origin, np.array([self.physical(arm) for arm in range(self.count)]), self.numbers())
+
+    def set_state(self, state: Any) -> None:
+        """Go on from the state of an equal batch.
+
+        Raises:
+            InputError: for what is no such state.
+        """
+        self.restore(check_state(state, self.setup.origin, self.count).numbers)
+
     def close(self) -> None:
         """Dismiss the threads."""
         if self.crew:
             self.crew.dismiss()
             self.crew = None
 
-    def reset(self, arms: Sequence[int] | Indices, seeds: Sequence[int | None] | None = None) -> None:
-        """Start the next episode of some arms; with a seed, their first one of that seed."""
+    def reset(self, arms: Sequence[int] | Indices, seeds: Sequence[int | None] | None = None, start: Start = TASK_START) -> None:
+        """Start the next episode of some arms; with a seed, their first one of that seed.
+
+        Args:
+            arms: their numbers.
+            seeds: one for each of them, or None.
+            start: their states and targets, where these are not the task's.
+
+        Raises:
+            InputError: for a state that an arm cannot have.
+        """
         for i, arm in enumerate(arms):
             seed = None if seeds is None else seeds[i]
             if seed is None:
@@ -98,17 +153,32 @@ class Batch:
             drawn = [self.arm_of(int(arm)) for arm in arms]
             self.constants[arms] = self.plant.constants_of([arm.structure() for arm in drawn], [arm.laws() for arm in drawn])
         for i, arm in enumerate(arms):
-            self._start(int(arm), drawn[i])
+            self._start(int(arm), drawn[i], start)
+        self.aim(arms, start)
 
-    def _start(self, arm: int, drawn: Arm) -> None:
+    def aim(self, arms: Sequence[int] | Indices, start: Start) -> None:
+        """Set the targets of some arms where they are not the task's, at the present time of their episodes."""
+        if start.targets is None:
+            return
+        half_period, rows = self.setup.task.half_period, self.outcome
+        for arm in arms:
+            half = math.floor(rows[at.SAMPLE_COUNT, arm] * (1.0 / self.setup.rate) / half_period + 1e-9) if half_period else 0
+            self.own[arm, at.FIRST_TARGET] = start.targets[arm]
+            rows[at.TARGET, arm] = start.targets[arm] * (1.0 if half % 2 == 0 else -1.0)
+            self.observations[arm, -1] = rows[at.TARGET, arm] / self.target_scale
+
+    def _start(self, arm: int, drawn: Arm, start: Start) -> None:
         setup, own = self.setup, self.own[arm]
         self.rng_keys[arm] = self._key(arm, "sensors")
         plant = self.plant
         if setup.variation.ranges:
             plant.constants[:] = self.constants[arm]
-        if setup.variation.ranges or self.first_state is None:
-            self.first_state = self._run_up(plant)
-        self.states[arm] = self.first_state
+        if start.physical is not None:
+            self.states[arm] = placed(plant, start.physical[arm])
+        else:
+            if setup.variation.ranges or self.first_state is None:
+                self.first_state = self._run_up(plant)
+            self.states[arm] = self.first_state
         self.waiting[:, arm] = 0.0
         plant.kernel.write_noiseless(self.arena, plant.layout, self.plant_offsets, arm, arm + 1)
         angle = self.noiseless_readings[arm, TRUTH_ANGLE - TRUTH_SIZE]
@@ -147,7 +217,7 @@ class Batch:
         self.after_step(self.arena, self.env_offsets, self.rng_keys, self.observations, first, last)
 
     def request(self, actions: Floats) -> int:
-        """Set the commands of the next step to actions (arms,) · limit; return the first arm without a finite action, or -1."""
+        """Set the commands of the next step to actions (arms,) · limit; return the first arm with an impossible action, or -1."""
         return int(self.kernel.request(actions, self.arena, self.env_offsets, self.limit))
 
     def info(self) -> dict[str, Floats]:

@@ -84,7 +84,7 @@ def _term(term: RewardTerm) -> str:
         InputError: for a function without source.
     """
     try:
-        source = textwrap.dedent(inspect.getsource(term.function))
+        source = textwrap.dedent(vars(term.function).get("source") or inspect.getsource(term.function))
     except OSError:
         raise InputError(f"reward term '{term.name}' has no source to compile: write its function in a file") from None
     (function,) = ast.parse(source).body

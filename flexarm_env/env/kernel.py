@@ -20,6 +20,7 @@ from flexarm_env.env.layout import (
     HALF_PERIOD,
     HUB_ANGLE,
     INTERVAL,
+    LARGEST_ACTION,
     LENGTH,
     LIMIT,
     RANGE,
@@ -73,11 +74,11 @@ def after_reset(arena, offsets, rng_keys, observations, arm):
 
 @njit(cache=True, nogil=True, error_model="numpy", _nrt=False)
 def request(actions, arena, offsets, limit):
-    """Write the commands that actions (arms,) request [A or V]; return the first arm with an action that is no number, or -1."""
+    """Write the commands that actions (arms,) request [A or V]; return the first arm with an impossible action, or -1."""
     requested = offsets[AT_REQUESTED]
     for arm in range(len(actions)):
         action = actions[arm]
-        if not math.isfinite(action):
+        if not abs(action) <= LARGEST_ACTION:
             return arm
         arena[requested + arm] = min(max(action, -1.0), 1.0) * limit
     return -1

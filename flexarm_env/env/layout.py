@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from numba import njit
 
+#: An action is clipped to ±1. Beyond this one it comes from a fault of its sender, as infinity does, and is refused.
+LARGEST_ACTION = 1e6
+
 # --- settings: one number each, for all arms; the weights of the reward's terms come last
 (
     INTERVAL, HALF_PERIOD, RANGE, LIMIT, TAP_CHANCE, LARGEST_TAP_TORQUE, TAP_SAMPLES, DROP_CHANCE, DROP_SAMPLES,

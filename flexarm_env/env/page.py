@@ -48,15 +48,18 @@ deflection, u the command over its limit.
 
 {start}
 
+`reset(options={{"state": x, "target": angle}})` starts at another physical state, as `env.unwrapped.state().physical` has it, and
+with another target. `env.unwrapped.set_state(state)` goes back to a state that `env.unwrapped.state()` returned, bit for bit.
+
 ## Episode End
 
 1. Termination: {termination}
-2. Truncation: after {steps} steps of {step:g} ms, {duration:g} s.
+2. Truncation: after {duration:g} s, {steps} steps of {step:g} ms.
 
 ## Arguments
 
 `arm` (name, arm file or `Arm`; the corrected arm that `flexarm diagnose --save` writes as well), `prior`, `randomise`,
-`vary`, `disturb`, `control_rate`, `physical`, `render_mode`: see `FlexArmEnv`. `FlexArm/{title}-Random-v0` carries an
+`vary`, `disturb`, `control_rate`, `duration`, `physical`, `render_mode`: see `FlexArmEnv`. `FlexArm/{title}-Random-v0` carries an
 unknown payload of {lightest:g} to {heaviest:g} kg at its tip, drawn anew for each episode.
 
 ```python

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +21,12 @@ from flexarm_env.plant.plant import Plant
 from flexarm_env.sensors import Sensor, known_sensors
 from flexarm_env.sensors.arm_angle import ArmAngle
 from flexarm_env.tasks import CONTROL_RATE, Task
+from flexarm_env.tasks.task import LEAST
 from flexarm_env.thesis_drive import GEAR_RATIO
 
 Floats = NDArray[np.float64]
 MOST_RATE = 10_000.0
+COMMAND_UNIT = {"current": "A", "voltage": "V"}
 
 
 @dataclass(frozen=True)
@@ -46,16 +53,36 @@ class Setup:
         if not (math.isfinite(self.rate) and 1.0 <= self.rate <= MOST_RATE):
             raise InputError(f"control_rate = {self.rate} Hz; allowed are 1 to {MOST_RATE:g}")
         if not self.arm.constants["drive"]["limit"] > 0.0:
-            raise InputError(f"arm '{self.arm.name}' has no limit of its drive; set limit under [drive] in its file")
+            raise InputError(
+                f"arm '{self.arm.name}' states no drive.limit, of which an action is a share; give an arm of your own that "
+                f'states it, as arm.with_values({{"drive.limit": 5.0}}) with its largest command [{COMMAND_UNIT[self.arm.input]}]'
+            )
         if not self.arm.sensors:
             raise InputError(f"arm '{self.arm.name}' has no sensors; an environment needs one at least")
         for signal in self.arm.sensors:
             self.arm.reading_noise(signal)  # refuses noise that only recordings give
 
+    @cached_property
+    def origin(self) -> str:
+        """Name of the task, the arm, and a hash of all numbers on which a step depends: equal ones go on alike."""
+        task, arm = self.task, self.arm
+        parts = (
+            {name: getattr(task, name) for name in (*LEAST, "hold") if name != "duration"},
+            [(term.name, term.quantities, task.weight(term)) for term in task.terms],
+            [arm.input, arm.constants, arm.sensors, arm.effects],
+            [self.variation.ranges, vars(self.disturbance), self.rate, self.physical],
+        )
+        return f"{task.name}, {arm.name}, {hashlib.sha256(json.dumps(parts, default=_plain).encode()).hexdigest()[:12]}"
+
     @property
     def samples(self) -> int:
         """Control steps of an episode."""
         return self.task.steps(self.rate)
+
+    @property
+    def frame_rate(self) -> int | float:
+        """Pictures per second of a film with one picture of each step [Hz]."""
+        return int(self.rate) if self.rate.is_integer() else self.rate
 
     def scales(self) -> Floats:
         """List the divisors of readings and target (signals + 1,)."""
@@ -78,6 +105,11 @@ class Setup:
     def _gearing(self, sensor: type[Sensor]) -> float:
         """Compute the gear ratio over the thesis's for a signal on the motor's side, else 1."""
         return self.arm.constants["drive"]["gear_ratio"] / GEAR_RATIO if sensor.motor_side else 1.0
+
+
+def _plain(value: Any) -> Any:
+    """Convert a mapping or a number of numpy for JSON."""
+    return dict(value) if isinstance(value, Mapping) else float(value)
 
 
 def check_layouts(setup: Setup, plant: Plant) -> None:

@@ -19,16 +19,16 @@ TRACE_TIME = 3.0  # [s]
 
 
 class View:
-    """Draws the first arm of a batch.
+    """Draws the arms of a batch.
 
     Args:
         setup: of the environment.
         mode: "human" or "rgb_array".
-        fps: frames per second of a window.
+        fps: frames per second of a window [Hz].
         title: of the pictures; task and arm by default.
     """
 
-    def __init__(self, setup: Setup, mode: Literal["human", "rgb_array"], fps: int, title: str | None = None) -> None:
+    def __init__(self, setup: Setup, mode: Literal["human", "rgb_array"], fps: float, title: str | None = None) -> None:
         structure = setup.arm.structure()
         self.length = structure.length or 1.0
         self.stations = np.linspace(0.0, self.length, STATIONS)
@@ -38,26 +38,26 @@ class View:
         self.signals = list(setup.arm.sensors)
         self.bent = next((s for s in ("strain_base", "tip_deflection", "strain_mid") if s in self.signals), None)
         self.setup, self.title = setup, title or f"{setup.task.name} · {setup.arm.name}"
-        self.trace: deque[tuple[float, float]] = deque(maxlen=round(TRACE_TIME * setup.rate))
+        #: Times and strains of the last seconds of each arm that has been drawn.
+        self.traces: dict[int, deque[tuple[float, float]]] = {}
 
-    def clear(self) -> None:
-        """Clear the strain of the last episode."""
-        self.trace.clear()
-
-    def draw(self, batch: Batch, state: NDArray[np.float64]) -> NDArray[np.uint8] | None:
-        """Draw the arm in a physical state (states,)."""
-        outcome = batch.first_outcome.tolist()
+    def draw(self, batch: Batch, arm: int = 0) -> NDArray[np.uint8] | None:
+        """Draw an arm in its present state."""
+        outcome = batch.outcome[:, arm].tolist()
         time = outcome[at.SAMPLE_COUNT] / self.setup.rate
+        trace = self.traces.setdefault(arm, deque(maxlen=round(TRACE_TIME * self.setup.rate)))
+        while trace and trace[-1][0] >= time:  # of an episode before, or of a state to which the arm has returned
+            trace.pop()
         if self.bent is not None:
-            self.trace.append((time, float(batch.sensor_output[0, self.signals.index(self.bent)])))
-        times, values = np.array(self.trace).reshape(-1, 2).T
+            trace.append((time, float(batch.sensor_output[arm, self.signals.index(self.bent)])))
+        times, values = np.array(trace).reshape(-1, 2).T
         return self.renderer.draw(
             Scene(
                 time=time,
                 hub_angle=outcome[at.HUB_ANGLE],
                 stuck=outcome[at.STUCK] > 0.0,
                 stations=self.stations,
-                deflection=self.shape @ state,
+                deflection=self.shape @ batch.physical(arm),
                 target=outcome[at.TARGET],
                 command=outcome[at.COMMAND] / batch.limit,
                 trace=(times, values),

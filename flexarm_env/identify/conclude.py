@@ -11,10 +11,12 @@ from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.calibrate.intervals import estimates
 from flexarm_env.identify.explain.detection_limits import detection_limits
+from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.origin import with_origin
-from flexarm_env.identify.replay.error_measure import Score
+from flexarm_env.identify.replay.error_measure import Score, closed_loop_errors
 from flexarm_env.identify.results import Candidate, Diagnosis
 from flexarm_env.identify.select.trace import Trace
+from flexarm_env.identify.settings import Settings
 from flexarm_env.recordings.recording import Recording
 
 
@@ -65,6 +67,7 @@ def conclude(
         trace=trace.as_json(),
         settings=calibrator.settings,
         seed=seed,
+        closed_loop=closed_loop_errors({name: scores[name] for name in free}),
     )
 
 
@@ -96,6 +99,27 @@ def insufficient(arm: Arm, calibrator: Calibrator) -> Diagnosis:
         notes=[],
         next_run=propose({"": nominal}, calibrator.dataset.interval),
         settings=calibrator.settings,
+        closed_loop=closed_loop_errors(dict.fromkeys(names, score)),
+    )
+
+
+def at_fault(arm: Arm, faults: Sequence[Fault], settings: Settings) -> Diagnosis:
+    """Build the diagnosis of recordings that are at fault: no model is judged by them."""
+    unknown = dict.fromkeys(("nominal", "refitted", "final"), float("nan"))
+    return Diagnosis(
+        verdict="recordings",
+        effects=[],
+        equivalent=[],
+        ranking=[],
+        error=unknown,
+        free_run=unknown,
+        constants={},
+        arm=arm,
+        nominal=arm,
+        refitted=arm,
+        notes=[],
+        recordings=list(faults),
+        settings=settings,
     )
 
 

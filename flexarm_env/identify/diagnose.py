@@ -8,7 +8,8 @@ from dataclasses import replace
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibrator import Calibrator
-from flexarm_env.identify.conclude import conclude, insufficient, with_outlook
+from flexarm_env.identify.conclude import at_fault, conclude, insufficient, with_outlook
+from flexarm_env.identify.inspect.inspection import inspect_recordings
 from flexarm_env.identify.progress import Progress, ProgressCallback
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.error_measure import error_measure
@@ -46,7 +47,7 @@ def diagnose(
         rate: samples per second [Hz] that are kept; 0 keeps all. By default, as many as the arm needs.
 
     Returns:
-        The verdict, the missing effects, and the corrected arm.
+        The verdict, the missing effects, and the corrected arm; or the faults of the recordings, which are looked for first.
 
     Raises:
         InputError: for recordings that do not fit the arm.
@@ -61,6 +62,10 @@ def diagnose(
     began = time.perf_counter()
     constants, searching, outlook = Progress.to(progress).split(1, 18, 1)
     nominal, dataset = prepare(arm, recordings, settings, rate)
+    constants.at(0.0, "inspecting the recordings")
+    inspected = inspect_recordings(arm, recordings, settings)
+    if inspected.faults:
+        return _with_run_facts(at_fault(arm, inspected.faults, settings), [], began, seed)
     notes, too_poor = preflight(dataset)
     calibrator = Calibrator(nominal, dataset, Workers(jobs))
     if too_poor:
@@ -71,7 +76,7 @@ def diagnose(
         calibrator, calibration = calibrator.choose_hold_out()  # all that follows is judged on its dataset
     base = judge((), calibration, calibrator.dataset)
     nominal_score = calibrator.score(nominal)
-    rules = criteria(nominal_score, base.score, error_measure(nominal).judges_free_run, settings)
+    rules = criteria(nominal_score, base.score, error_measure(nominal).judges_whole_run, settings)
 
     trace = Search(calibrator, rules).run(base, searching)
 

@@ -15,6 +15,7 @@ from flexarm_env.identify.calibrate.parameters import free_parameters
 from flexarm_env.identify.origin import with_origin
 from flexarm_env.identify.progress import Progress, ProgressCallback
 from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.replay.error_measure import closed_loop_errors
 from flexarm_env.identify.results import Addition, Fit
 from flexarm_env.identify.select.screen import attempt
 from flexarm_env.identify.select.signatures import baselines, signatures
@@ -76,6 +77,7 @@ def fit(
         free_run={"nominal": before.free_run, "refitted": after.free_run},
         seconds=time.perf_counter() - began,
         settings=settings,
+        closed_loop=closed_loop_errors({"nominal": before, "refitted": after}),
         notes=list(dataset.notes),
     )
 
@@ -138,6 +140,7 @@ def add(
         free_run={name: s.free_run for name, s in zip(names, scores, strict=True)},
         seconds=time.perf_counter() - began,
         settings=settings,
+        closed_loop=closed_loop_errors(dict(zip(names, scores, strict=True))),
         notes=list(dataset.notes),
     )
 

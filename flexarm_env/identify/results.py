@@ -13,6 +13,7 @@ from flexarm_env.display import Shown
 from flexarm_env.experiments.next_run import NextRun
 from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.explain.detection_limits import DetectionLimit
+from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.settings import SETTINGS, Settings
 
 Floats = NDArray[np.float64]
@@ -27,6 +28,7 @@ class Fit:
         estimates: every fitted value.
         error: "nominal", "refitted": rms over noise on the held-out part, in windows of 1 s.
         free_run: the same, replayed once from the start.
+        closed_loop: the same in closed loop, where the recordings were made in a known one; else empty.
         seconds: time taken.
         settings: numbers of the method.
         notes: a sentence each for a person, on the recordings.
@@ -38,6 +40,7 @@ class Fit:
     free_run: dict[str, float]
     seconds: float
     settings: Settings = SETTINGS
+    closed_loop: dict[str, float] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
 
@@ -51,6 +54,7 @@ class Addition:
         estimates: the effect's parameters, then the constants.
         error: "nominal", "refitted" (constants only), "final" (with the effect): rms over noise, held out, windows of 1 s.
         free_run: the same, replayed once from the start.
+        closed_loop: the same in closed loop, where the recordings were made in a known one; else empty.
         seconds: time taken.
         settings: numbers of the method.
         notes: a sentence each for a person, on the recordings.
@@ -63,6 +67,7 @@ class Addition:
     free_run: dict[str, float]
     seconds: float
     settings: Settings = SETTINGS
+    closed_loop: dict[str, float] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
 
@@ -88,13 +93,14 @@ class Diagnosis(Shown):
     """The diagnosis of an arm, and the corrected arm.
 
     Attributes:
-        verdict: "nothing_missing", "parameters", "effects", "unknown" or "insufficient_data".
+        verdict: "nothing_missing", "parameters", "effects", "unknown", "recordings" or "insufficient_data".
         effects: those accepted, in the order of their weight.
         equivalent: for each accepted effect, all that these data cannot tell from it, itself first.
         ranking: candidates by gain.
         error: "nominal", "refitted", "final", and one entry after each accepted effect under its name; rms over noise, held
             out, windows of 1 s.
         free_run: the same, replayed once from the start.
+        closed_loop: the same in closed loop, where the recordings were made in a known one; else empty.
         constants: all fitted values of the final arm by short name.
         arm: the corrected arm.
         nominal: the arm that came in.
@@ -102,6 +108,7 @@ class Diagnosis(Shown):
         notes: a sentence each for a person: findings on the recordings, and the remaining error.
         smallest: the size of each effect that is not accepted up to which it would go undetected in these recordings.
         next_run: the input to record next, where these leave something open.
+        recordings: faults of the recordings. Where there are any nothing was searched, and errors are NaN.
         trace: the search, step by step, as plain data.
         settings: numbers of the method.
         seconds: time taken.
@@ -123,14 +130,17 @@ class Diagnosis(Shown):
     seed: int = 0
     smallest: dict[str, DetectionLimit] = field(default_factory=dict)
     next_run: NextRun | None = None
+    recordings: list[Fault] = field(default_factory=list)
     trace: list[dict[str, Any]] = field(default_factory=list)
     settings: Settings = SETTINGS
+    closed_loop: dict[str, float] = field(default_factory=dict)
 
     def as_json(self) -> dict[str, Any]:
         """Convert to plain data for `--json`."""
         return {
             "verdict": self.verdict,
             "effects": self.effects,
+            "recordings": [fault.as_json() for fault in self.recordings],
             "equivalent": self.equivalent,
             "ranking": [
                 {
@@ -143,6 +153,7 @@ class Diagnosis(Shown):
             ],
             "error": self.error,
             "free_run": self.free_run,
+            "closed_loop": self.closed_loop,
             "constants": {name: e.as_json() for name, e in self.constants.items()},
             "notes": self.notes,
             "smallest": {name: hidden.as_json() for name, hidden in self.smallest.items()},

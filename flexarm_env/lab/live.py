@@ -13,6 +13,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.experiments.payload import with_payload
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.error_measure import Score, score
+from flexarm_env.identify.replay.readings import bounded
 from flexarm_env.identify.replay.replay import replay
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.recordings.recording import Recording
@@ -26,7 +27,7 @@ class Simulated:
 
     Attributes:
         readings: (samples, signals) by recording.
-        error: rms over noise of all samples and signals.
+        error: rms over noise of all readings.
     """
 
     readings: dict[str, Floats]
@@ -58,9 +59,10 @@ class Live:
         """Replay all recordings freely."""
         known = self._reduced(arm)
         readings = list(self._threads.map(lambda run: self._replay(known, run), self.data.runs))
-        off = [(run.measured - y) / self.data.noise for run, y in zip(self.data.runs, readings, strict=True)]
-        squares = np.concatenate([np.nan_to_num(one, nan=1e6, posinf=1e6, neginf=-1e6).ravel() for one in off]) ** 2
-        return Simulated({run.name: y for run, y in zip(self.data.runs, readings, strict=True)}, float(np.sqrt(squares.mean())))
+        pairs = list(zip(self.data.runs, readings, strict=True))
+        total = sum(float(np.sum(bounded(run.errors(y, self.data.noise)) ** 2)) for run, y in pairs)
+        count = sum(run.readings() for run in self.data.runs)
+        return Simulated({run.name: y for run, y in pairs}, float(np.sqrt(total / count)))
 
     def held_out(self, arm: Arm) -> Score:
         """Compute the held-out errors of an arm; this takes about a second."""

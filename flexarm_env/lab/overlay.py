@@ -13,7 +13,7 @@ from plotly.subplots import make_subplots
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.pictures import words
 from flexarm_env.pictures.overlays import title
-from flexarm_env.pictures.plots import digits, legend, with_layout
+from flexarm_env.pictures.plots import digits, legend, where_measured, with_layout
 from flexarm_env.pictures.style import AFTER_LINE, BEFORE_LINE, MEASURED_LINE
 
 Floats = NDArray[np.float64]
@@ -41,16 +41,17 @@ def overlay(run: Run, signals: list[str], given: Floats, now: Floats) -> go.Figu
         len(order), 1, shared_xaxes=True, vertical_spacing=0.3 / (len(order) + 1), subplot_titles=[title(s) for s in order]
     )
     figure.update_annotations(x=0, xanchor="left", font_size=13)
-    x = thinned(run.time)
     for row, signal in enumerate(order, start=1):
         column = signals.index(signal)
-        for values, line, name in (
-            (run.measured, MEASURED_LINE, "measured"),
-            (given, BEFORE_LINE, "as given"),
-            (now, AFTER_LINE, "now"),
+        measured = run.measured[:, column]
+        there = where_measured(run.time, measured, measured, POINTS)
+        for (x, y), line, name in (
+            ((digits(there[0]), digits(there[1])), MEASURED_LINE, "measured"),
+            ((thinned(run.time), thinned(given[:, column])), BEFORE_LINE, "as given"),
+            ((thinned(run.time), thinned(now[:, column])), AFTER_LINE, "now"),
         ):
             look: dict[str, Any] = {"name": name, "legendgroup": name, "showlegend": row == 1, "line": line}
-            figure.add_trace(go.Scatter(x=x, y=thinned(values[:, column]), mode="lines", **look), row, 1)
+            figure.add_trace(go.Scatter(x=x, y=y, mode="lines", **look), row, 1)
     figure.update_xaxes(title_text="time [s]", row=len(order))
     figure.update_layout(uirevision=run.name)  # a zoom outlives a drag
     return with_layout(figure, 90 + HEIGHT * len(order), "x unified", top=58, **legend(1.0 + 24.0 / (HEIGHT * len(order))))

@@ -9,8 +9,9 @@ from nicegui import html, ui
 from flexarm_env.errors import InputError
 from flexarm_env.lab.data_panel import DataPanel
 from flexarm_env.lab.effects_panel import EffectsPanel
+from flexarm_env.lab.inspection_panel import InspectionPanel
 from flexarm_env.lab.results_panel import ResultsPanel
-from flexarm_env.lab.session import Session
+from flexarm_env.lab.session import INSPECTING, Session
 from flexarm_env.lab.style import CSS, PRIMARY
 from flexarm_env.lab.view_panel import ViewPanel
 from flexarm_env.recordings.recording import Recording
@@ -42,6 +43,7 @@ class LabPage:
                         self.data = DataPanel(session, demo, self._show_status, self.show_error, self.refresh)
                     self._diagnose_card()
                 with html.section().classes("view"):
+                    self.inspection = InspectionPanel(session, self.show_error, self._buttons)
                     self.results = ResultsPanel(session, self.show_error, self._refresh_arm)
                     with html.div().classes("card"):
                         self.view = ViewPanel(session, self.results.refresh)
@@ -65,6 +67,7 @@ class LabPage:
     def refresh(self) -> None:
         """Show the session anew."""
         self.data.refresh()
+        self.inspection.refresh()
         self.view.refresh()
         self._refresh_arm()
 
@@ -110,6 +113,7 @@ class LabPage:
         self.stopper.set_enabled(busy)
         self.bar.set_visibility(busy)
         self.results.enable(not busy)
+        self.inspection.enable(not busy)
 
     def _poll(self) -> None:
         """Show progress and results of the current work."""
@@ -126,7 +130,8 @@ class LabPage:
         if job.state == "failed":
             self.show_error(job.text)
         elif isinstance(job.result, str):
-            ui.download.content(job.result, "report.html", "text/html")
+            name = "inspection.html" if job.title == INSPECTING else "report.html"
+            ui.download.content(job.result, name, "text/html")
         else:
             self._refresh_arm()
         self._buttons()

@@ -11,16 +11,20 @@ import flexarm_env
 from flexarm_env.arm import Arm
 from flexarm_env.arm_file import arm_text
 from flexarm_env.errors import InputError
+from flexarm_env.identify.inspect.inspection import Inspection, inspect_recordings
+from flexarm_env.identify.inspect.overview import overview
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.results import Addition, Diagnosis
 from flexarm_env.lab.job import DONE, Job, Progress
 from flexarm_env.lab.live import Live
 from flexarm_env.lab.uploads import read_upload
+from flexarm_env.pictures.inspection_page import inspection_page
 from flexarm_env.recordings.recording import Recording
 from flexarm_env.terminal.provenance import command_line, provenance
 from flexarm_env.terminal.report import report
 
 SEED, JOBS = 0, 2
+INSPECTING = "Inspecting"
 AS_GIVEN, REFITTED, BY_HAND = "as given", "constants refitted", "by hand"
 
 
@@ -37,6 +41,7 @@ class Session:
         arm_named: the arm's file or name there; "" for the name of `base`.
         recordings: of the machine.
         live: the prepared recordings; None while there are none.
+        inspection: facts on the recordings and their faults; None while there are none.
         steps: name and held-out error over the noise after each step.
         diagnosis: the last one; it is of the arm before its effects were added.
         job: the current work, or the last.
@@ -51,6 +56,7 @@ class Session:
     recordings: list[Recording] = field(default_factory=list)
     steps: list[tuple[str, float]] = field(default_factory=list)
     live: Live | None = None
+    inspection: Inspection | None = None
     diagnosis: Diagnosis | None = None
     job: Job | None = None
     added: bool = False
@@ -88,8 +94,9 @@ class Session:
         # Pages read the session meanwhile: it changes only after all checks have passed.
         live = Live(self.base, recordings) if recordings else None
         steps = [] if live is None else [(AS_GIVEN, live.held_out(self.base).windows)]
+        inspection = inspect_recordings(self.base, recordings) if recordings else None
         self.stop()
-        self.recordings, self.live, self.steps = recordings, live, steps
+        self.recordings, self.live, self.steps, self.inspection = recordings, live, steps, inspection
         self.arm = self.draft = self.base
         self.diagnosis, self.job, self.added = None, None, False
 
@@ -185,21 +192,34 @@ class Session:
     def _step(self, name: str, error: float) -> None:
         self.steps = [*self.steps, (name, error)]
 
+    def write_inspection(self) -> None:
+        """Start writing the page of what the recordings hold and can show."""
+        recordings, base = self._ready(), self.base
+        made = self._made("inspect", base, None)
+
+        def work(progress: Progress) -> str:
+            return inspection_page(overview(base, recordings, progress), made)
+
+        self._begin(INSPECTING, work)
+
     def write_report(self) -> None:
         """Start writing the page of the last diagnosis, or of a comparison where there is none."""
         recordings, base, diagnosis = self._ready(), self.base, self.diagnosis
         nominal = base if diagnosis is None else diagnosis.nominal
         verb = "compare" if diagnosis is None else "diagnose"
-        seed = None if diagnosis is None else SEED
-        files = [one.source or one.name for one in recordings]
-        line = command_line(verb, files, self.arm_named or nominal.name, self.columns, self.effects, seed)
-        made = {"command_line": line, **provenance("lab", nominal.name, recordings, seed)}
+        made = self._made(verb, nominal, None if diagnosis is None else SEED)
 
         def work(progress: Progress) -> str:
             progress(0.05, "comparing")
             return report(recordings, flexarm_env.compare(nominal, recordings), diagnosis, made, progress)
 
         self._begin("Writing the report", work)
+
+    def _made(self, verb: str, arm: Arm, seed: int | None) -> dict[str, Any]:
+        """Gather the facts by which a page can be made again on the command line."""
+        files = [one.source or one.name for one in self.recordings]
+        line = command_line(verb, files, self.arm_named or arm.name, self.columns, self.effects, seed)
+        return {"command_line": line, **provenance("lab", arm.name, self.recordings, seed)}
 
     def poll(self) -> None:
         """Read the messages of the current work, and its result once it has ended."""

@@ -44,6 +44,15 @@ h2 { font-size: 1rem; font-weight: 600; line-height: 1.4; margin: 0 0 .5rem; let
 .ranked .parameters { grid-column: 1 / -1; font-size: .85rem; color: #555; overflow-wrap: anywhere; }
 .ranked .bar { grid-column: 1 / -1; height: .45rem; background: #e4e6e8; } .ranked .bar div { height: 100%; background: #7d8388; }
 .ranked.accepted .bar div { background: #0072b2; } .ranked.accepted .effect-name { font-weight: 700; }
+.faults { list-style: disc; margin: .4rem 0; padding-left: 1.2rem; } .faults:empty { display: none; }
+.faults li { overflow-wrap: anywhere; } .faults code { font-size: .85rem; background: #f2f4f5; padding: .1rem .3rem; }
+.scroll { overflow-x: auto; } .scroll table { border-collapse: collapse; font-size: .85rem; margin-bottom: .8rem; }
+.scroll th, .scroll td {
+  text-align: left; padding: .15rem .9rem .15rem 0; white-space: nowrap; font-variant-numeric: tabular-nums;
+}
+.scroll th { border-bottom: 1px solid #888; } .scroll tr + tr td { border-top: 1px solid #eceeef; }
+.signals .nicegui-expansion-content { padding: .4rem 0 0; } .signals .nicegui-expansion-content > * { width: 100%; min-width: 0; }
+.signals .q-item { padding-left: 0; } .signals .nicegui-expansion-content > button { width: auto; }
 .muted { color: #555; font-size: .9rem; }
 .q-uploader { display: none; }
 .drop { display: block; border: 2px dashed #6b7379; border-radius: 8px; padding: 1rem; text-align: center; cursor: pointer; }

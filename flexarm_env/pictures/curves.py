@@ -17,6 +17,7 @@ from flexarm_env.identify.explain.comparison import Comparison, Replay
 from flexarm_env.identify.results import Candidate, Diagnosis
 from flexarm_env.pictures import words
 from flexarm_env.pictures.highlight import ZOOM, most_informative_window, replay_of
+from flexarm_env.pictures.plots import where_measured
 from flexarm_env.pictures.style import AFTER, BEFORE, INK, MEASURED, QUIET, STYLE
 
 P = ParamSpec("P")
@@ -120,7 +121,7 @@ def loop(before: Comparison, after: Comparison, diagnosis: Diagnosis) -> Figure:
 
 def _curves(axes: Axes, old: Replay, new: Replay, signal: str, names: tuple[str, str]) -> None:
     label, unit = words.label_of(signal), words.unit_of(signal)
-    axes.plot(old.time, old.measured[signal], color=MEASURED, lw=2.6, label="measured")
+    axes.plot(*where_measured(old.time, old.measured[signal], old.measured[signal]), color=MEASURED, lw=2.6, label="measured")
     axes.plot(old.time, old.windows[signal], color=BEFORE, lw=1.1, ls=(0, (4, 1.2)), label=names[0])
     axes.plot(new.time, new.windows[signal], color=AFTER, lw=1.1, label=names[1])
     axes.set_ylabel(f"{label}\n[{unit}]")
@@ -128,15 +129,16 @@ def _curves(axes: Axes, old: Replay, new: Replay, signal: str, names: tuple[str,
 
 def _residuals(axes: Axes, old: Replay, new: Replay, signal: str, noise: float) -> None:
     axes.axhspan(-2.0, 2.0, color="#eeeeee", zorder=0)
-    axes.plot(old.time, (old.measured[signal] - old.windows[signal]) / noise, color=BEFORE, lw=0.8)
-    axes.plot(new.time, (new.measured[signal] - new.windows[signal]) / noise, color=AFTER, lw=0.8)
+    for one, colour in ((old, BEFORE), (new, AFTER)):
+        measured = one.measured[signal]
+        axes.plot(*where_measured(one.time, (measured - one.windows[signal]) / noise, measured), color=colour, lw=0.8)
     axes.set_ylabel("residual\n[noise σ]")
 
 
 def _fit_height(axes: Axes, start: float, stop: float) -> None:
     """Fit the y axis to the curves between start and stop [s]."""
-    shown = [np.asarray(line.get_ydata())[_inside(line, start, stop)] for line in axes.get_lines()]
-    low, high = min(y.min() for y in shown), max(y.max() for y in shown)
+    shown = np.concatenate([np.asarray(line.get_ydata())[_inside(line, start, stop)] for line in axes.get_lines()])
+    low, high = np.nanmin(shown), np.nanmax(shown)
     axes.set_ylim(low - 0.06 * (high - low), high + 0.06 * (high - low))
 
 

@@ -11,7 +11,7 @@ from flexarm_env.identify.explain.effect_curve import UNITS, EffectCurve
 from flexarm_env.pictures import words
 from flexarm_env.pictures.highlight import CLOSE, most_informative_window, replay_of
 from flexarm_env.pictures.overlays import title
-from flexarm_env.pictures.plots import STEPS_PER_NOISE, curve, digits, legend, with_layout
+from flexarm_env.pictures.plots import STEPS_PER_NOISE, curve, digits, legend, where_measured, with_layout
 from flexarm_env.pictures.style import AFTER_LINE, BEFORE_LINE, INK, MEASURED, MEASURED_LINE
 
 
@@ -63,14 +63,15 @@ def contribution(without: Comparison, after: Comparison) -> tuple[go.Figure, str
     old, new = replay_of(without, recording), replay_of(after, recording)
     inside = (old.time >= start) & (old.time <= start + CLOSE)
     step = after.noise[signal] / STEPS_PER_NOISE
-    missing = old.measured[signal] - old.windows[signal]
-    added = new.windows[signal] - old.windows[signal]
+    time, measured, model = old.time[inside], old.measured[signal][inside], old.windows[signal][inside]
+    missing = where_measured(time, measured - model, measured)
+    added = time, new.windows[signal][inside] - model
     figure = go.Figure()
-    for values, line, name in (
+    for points, line, name in (
         (missing, MEASURED_LINE | {"width": 7.0}, "residual without it"),
         (added, AFTER_LINE | {"width": 2.0}, "its contribution"),
     ):
-        figure.add_trace(curve(old.time[inside], values[inside], step, line=line, name=name))
+        figure.add_trace(curve(*points, step, line=line, name=name))
     figure.update_xaxes(title_text="time [s]")
     figure.update_yaxes(title_text=title(signal))
     return with_layout(figure, 330, "x unified", **legend()), f"{words.label_of(signal)}, recording {recording}"

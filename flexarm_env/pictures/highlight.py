@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
 from flexarm_env.identify.explain.comparison import Comparison, Replay
+from flexarm_env.identify.replay.readings import count_of, errors_of
 from flexarm_env.pictures import words
 
 ZOOM, CLOSE = 1.6, 0.8  # [s], in print and on a page that may be a phone's
@@ -38,17 +40,22 @@ def most_informative_window(before: Comparison, after: Comparison | None = None,
 
 def worst_signals(comparison: Comparison) -> list[str]:
     """Sort the signals by error over noise, the largest first."""
-    powers = {s: sum(float(_power(r, s, n).sum()) for r in comparison.replays) for s, n in comparison.noise.items()}
+    powers = {}
+    for signal, noise in comparison.noise.items():
+        total = sum(float(_power(one, signal, noise).sum()) for one in comparison.replays)
+        powers[signal] = total / sum(count_of(one.measured[signal]) for one in comparison.replays)
     return sorted(words.signals_of(list(powers)), key=lambda signal: -powers[signal])
 
 
 def error_by_second(replays: Sequence[Replay], noise: dict[str, float]) -> list[list[float]]:
-    """Compute, for each recording, the rms error over noise of all signals in each second."""
+    """Compute, for each recording, the rms error over noise of all signals in each second; NaN where nothing was measured."""
     out = []
     for one in replays:
-        power = np.mean([_power(one, signal, noise[signal]) for signal in one.measured], axis=0)
+        power = np.sum([_power(one, signal, noise[signal]) for signal in one.measured], axis=0)
+        count = np.sum([~np.isnan(values) for values in one.measured.values()], axis=0)
         second = one.time.astype(int)
-        out.append([float(np.sqrt(power[second == s].mean())) for s in np.unique(second)])
+        totals = [(power[second == s].sum(), count[second == s].sum()) for s in np.unique(second)]
+        out.append([float(np.sqrt(total / readings)) if readings else math.nan for total, readings in totals])
     return out
 
 
@@ -60,4 +67,4 @@ def _reduction(old: Replay, new: Replay | None, signal: str, noise: float, span:
 
 
 def _power(one: Replay, signal: str, noise: float) -> np.ndarray:
-    return np.nan_to_num(((one.measured[signal] - one.windows[signal]) / noise) ** 2, nan=1e12, posinf=1e12)
+    return np.nan_to_num(errors_of(one.measured[signal], one.windows[signal], noise) ** 2, nan=1e12, posinf=1e12)

@@ -56,7 +56,7 @@ def _(recording: Recording) -> str:
 
 
 def _reach(values: np.ndarray) -> list[str]:
-    return [words.number(float(values.min())), words.number(float(values.max()))]
+    return [words.number(float(np.nanmin(values))), words.number(float(np.nanmax(values)))]
 
 
 @as_html.register

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from flexarm_env.identify.explain.comparison import Comparison, Replay
+from flexarm_env.identify.replay.readings import extent
 from flexarm_env.pictures import words
 from flexarm_env.pictures.highlight import CLOSE, most_informative_window, replay_of
-from flexarm_env.pictures.plots import STEPS_PER_NOISE, Floats, curve, legend, with_layout
+from flexarm_env.pictures.plots import STEPS_PER_NOISE, Floats, curve, legend, where_measured, with_layout
 from flexarm_env.pictures.style import AFTER_LINE, BEFORE_LINE, INK, MEASURED_LINE
 from flexarm_env.recordings.recording import Recording
 
@@ -37,16 +37,16 @@ def signals(old: Replay, new: Replay | None, noise: dict[str, float]) -> go.Figu
     kinds: list[str] = []
     for i, signal in enumerate(names):
         first, step = i == 0, noise[signal] / STEPS_PER_NOISE
-        figure.add_trace(
-            curve(old.time, old.measured[signal], step, name="measured", line=MEASURED_LINE, showlegend=first), 2 * i + 1, 1
-        )
+        measured = old.measured[signal]
+        there = where_measured(old.time, measured, measured)
+        figure.add_trace(curve(*there, step, name="measured", line=MEASURED_LINE, showlegend=first), 2 * i + 1, 1)
         kinds.append("both")
         for name, line, replay in models:
             for kind, curves in (("windows", replay.windows), ("free", replay.free)):
-                look = {"name": name, "legendgroup": name, "line": line, "visible": kind == "windows"}
-                off = (replay.measured[signal] - curves[signal]) / noise[signal]
+                look: dict[str, Any] = {"name": name, "legendgroup": name, "line": line, "visible": kind == "windows"}
+                off = where_measured(replay.time, (measured - curves[signal]) / noise[signal], measured)
                 figure.add_trace(curve(replay.time, curves[signal], step, showlegend=first, **look), 2 * i + 1, 1)
-                residual = curve(replay.time, off, 1.0 / STEPS_PER_NOISE, showlegend=False, **look)
+                residual = curve(*off, 1.0 / STEPS_PER_NOISE, showlegend=False, **look)
                 figure.add_trace(residual, 2 * i + 2, 1)
                 kinds += [kind, kind]
         band(figure, 2 * i + 2)
@@ -79,14 +79,15 @@ def informative_window(before: Comparison, after: Comparison | None) -> tuple[go
     inside = (old.time >= start) & (old.time <= start + CLOSE)
     step = before.noise[signal] / STEPS_PER_NOISE
     figure = go.Figure()
-    rows: list[tuple[Floats, dict[str, Any], str]] = [
-        (old.measured[signal], MEASURED_LINE, "measured"),
-        (old.windows[signal], BEFORE_LINE, AS_GIVEN),
+    time, measured = old.time[inside], old.measured[signal][inside]
+    rows: list[tuple[tuple[Floats, Floats], dict[str, Any], str]] = [
+        (where_measured(time, measured, measured), MEASURED_LINE, "measured"),
+        ((time, old.windows[signal][inside]), BEFORE_LINE, AS_GIVEN),
     ]
     if after is not None:
-        rows.append((replay_of(after, recording).windows[signal], AFTER_LINE, CORRECTED))
-    for values, line, name in rows:
-        figure.add_trace(curve(old.time[inside], values[inside], step, name=name, line=line))
+        rows.append(((time, replay_of(after, recording).windows[signal][inside]), AFTER_LINE, CORRECTED))
+    for points, line, name in rows:
+        figure.add_trace(curve(*points, step, name=name, line=line))
     figure.update_xaxes(title_text="time [s]")
     figure.update_yaxes(title_text=title(signal))
     return with_layout(figure, 300, "x unified", **legend()), f"{words.label_of(signal)}, recording {recording}"
@@ -102,7 +103,8 @@ def recorded(recording: Recording) -> go.Figure:
     )
     figure.update_annotations(x=0, xanchor="left", font_size=13)
     for i, (_, values) in enumerate(rows):
-        step = max(float(np.ptp(values)), 1e-12) / 5000.0
-        figure.add_trace(curve(recording.time, values, step, line={"color": INK, "width": 1.2}), i + 1, 1)
+        step = max(float(extent(values)), 1e-12) / 5000.0
+        there = where_measured(recording.time, values, values)
+        figure.add_trace(curve(*there, step, line={"color": INK, "width": 1.2}), i + 1, 1)
     figure.update_xaxes(title_text="time [s]", row=len(rows))
     return with_layout(figure, 60 + 150 * len(rows))

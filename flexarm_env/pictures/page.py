@@ -14,6 +14,7 @@ from flexarm_env.identify.results import Diagnosis
 from flexarm_env.pictures import bars, effect_figures, overlays, residuals, words
 from flexarm_env.pictures.document import bullets, document, figure, folded, panels, paragraph, section, table
 from flexarm_env.pictures.highlight import replay_of, worst_signals
+from flexarm_env.pictures.provenance_section import reproduce
 from flexarm_env.recordings.recording import Recording
 
 OVER_NOISE = "Held-out rms error over the noise; 1 (dotted) is perfect, hatched boxes are the part removed by a step."
@@ -47,12 +48,31 @@ def page(found: Findings) -> str:
     before, diagnosis = found.before, found.diagnosis
     sentence = words.comparison(before) if diagnosis is None else words.verdict(diagnosis)
     parts = [paragraph(sentence, "verdict"), _glance(found), bullets((diagnosis or before).notes)]
-    if diagnosis is not None:
+    if diagnosis is not None and diagnosis.recordings:
+        parts.append(_faults(diagnosis))
+    elif diagnosis is not None:
         parts += [_curves(found), _ranking(diagnosis), _falling(diagnosis), _constants(diagnosis)]
         parts += [_smallest(diagnosis), _next_run(diagnosis)]
-    parts += [section("Where it fails", _errors(before, found.after)), _residuals(found), _recordings(found), _redo(found)]
+    parts += [
+        section("Where it fails", _errors(before, found.after)),
+        _loop(before, found.after),
+        _residuals(found),
+        _recordings(found),
+        _redo(found),
+    ]
     title = f"Arm {before.arm.name} against {words.counted(len(before.replays), 'recording')}"
     return document(title, parts)
+
+
+def page_of_faults(diagnosis: Diagnosis) -> str:
+    """Build the HTML of a diagnosis whose recordings cannot be read as such, with nothing to replay."""
+    title = f"Arm {diagnosis.nominal.name} against recordings at fault"
+    return document(title, [paragraph(words.verdict(diagnosis), "verdict"), _faults(diagnosis)])
+
+
+def _faults(diagnosis: Diagnosis) -> str:
+    rows = words.fault_rows(diagnosis.recordings)
+    return section("Faults of the recordings", table(words.FAULT_COLUMNS, rows, words=len(words.FAULT_COLUMNS), code=(5,)))
 
 
 def _glance(found: Findings) -> str:
@@ -63,7 +83,7 @@ def _glance(found: Findings) -> str:
         rivals = any(len(names) > 1 for names in diagnosis.equivalent)
         caption = "✓ accepted; ≈ indistinguishable from it in these data." if rivals else "✓ accepted."
         shown.append(figure(bars.ranking(diagnosis, 6), "glance-which", "Missing effect", caption))
-    if diagnosis is not None:
+    if diagnosis is not None and not diagnosis.recordings:
         steps = words.steps_of(diagnosis.error, diagnosis.effects)
         shown.append(figure(bars.waterfall(steps), "glance-fall", "How the error fell", "Held out, over the noise."))
     else:
@@ -107,7 +127,9 @@ def _ranking(diagnosis: Diagnosis) -> str:
 
 def _falling(diagnosis: Diagnosis) -> str:
     shown = []
-    for name, error in (("windows of 1 s from estimated states", diagnosis.error), ("one free run", diagnosis.free_run)):
+    errors = {"windows of 1 s from estimated states": diagnosis.error, "one free run": diagnosis.free_run}
+    errors |= {"closed loop": diagnosis.closed_loop} if diagnosis.closed_loop else {}
+    for name, error in errors.items():
         drawn = bars.waterfall(words.steps_of(error, diagnosis.effects))
         shown.append(figure(drawn, f"fall-{name}", name[0].upper() + name[1:]))
     return section("How the held-out error fell", paragraph(OVER_NOISE), panels(shown, wide=True))
@@ -175,6 +197,16 @@ def _errors(before: Comparison, after: Comparison | None) -> str:
     return folded("Errors over the noise by signal, regime and frequency", table(columns, cells, words=2))
 
 
+def _loop(before: Comparison, after: Comparison | None) -> str:
+    """Format the errors in closed loop, of the arm as given and of the corrected one."""
+    if not before.loop_rows:
+        return ""
+    shown = [("As given", before)] + ([] if after is None else [("Corrected", after)])
+    parts = [f"<h3>{name}</h3>{table(words.LOOP_HEADS, words.loop_rows(one), words=2)}" for name, one in shown]
+    text = "The stated control law computes the command from the model's own readings and the recorded reference."
+    return section("In closed loop", paragraph(text), *parts)
+
+
 def _residuals(found: Findings) -> str:
     drivers = residuals.drivers(found.before, found.recordings)
     out = []
@@ -205,14 +237,7 @@ def _recordings(found: Findings) -> str:
 
 
 def _redo(found: Findings) -> str:
-    made = found.provenance
-    files = [[r.name, r.sha256 or words.NOTHING] for r in found.recordings]
-    facts = [f"FlexArm {made['version']}" if "version" in made else "", f"commit {made['commit']}" if made.get("commit") else ""]
-    facts += [f"seed {made['seed']}" if made.get("seed") is not None else ""]
-    command = f"<pre tabindex=0>{escape(str(made['command_line']))}</pre>" if made.get("command_line") else ""
-    text = paragraph(", ".join(fact for fact in facts if fact))
-    sums = table(["recording", "SHA-256 of its file"], files, words=2, code=(1,))
-    return section("How to reproduce it", command, text, _settings(found.diagnosis), sums)
+    return reproduce(found.provenance, found.recordings, _settings(found.diagnosis))
 
 
 def _settings(diagnosis: Diagnosis | None) -> str:

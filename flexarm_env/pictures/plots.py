@@ -10,6 +10,7 @@ import plotly.graph_objects as go
 from numpy.typing import NDArray
 
 from flexarm_env.pictures.style import GRID, INK
+from flexarm_env.recordings.recording import GAP
 
 Floats = NDArray[np.float64]
 
@@ -57,11 +58,33 @@ def digits(values: Floats, count: int = 4) -> list[float]:
     return in_steps(np.asarray(values, dtype=float), largest * 10.0**-count)
 
 
+def where_measured(time: Floats, values: Floats, measured: Floats, points: int | None = None) -> tuple[Floats, Floats]:
+    """Select times [s] and values (n,) at the readings of a signal, with NaN in gaps, which breaks the line there.
+
+    A slower sensor has a reading in some rows only. Its usual step is no gap.
+
+    Args:
+        time: (n,).
+        values: (n,), of the signal or of its residual.
+        measured: (n,), the signal; NaN where it was not measured.
+        points: about how many to thin them to; None for all.
+    """
+    there = np.flatnonzero(~np.isnan(measured))
+    whole = len(there) == len(measured)
+    there = there[:: max(len(there) // points, 1) if points else 1]
+    time, values = time[there], values[there]
+    if whole or len(there) < 2:
+        return time, values
+    steps = np.diff(time)
+    ends = np.flatnonzero(steps > GAP * np.median(steps)) + 1
+    return np.insert(time, ends, time[ends]), np.insert(values, ends, np.nan)
+
+
 def curve(time: Floats, values: Floats, step: float, **look: Any) -> Any:
     """Draw a line over time [s], its values rounded to a step."""
     # The page's size: even times follow from the first two.
     steps = np.diff(time)
-    even = np.allclose(steps, steps[0], rtol=1e-6)
+    even = len(steps) > 0 and np.allclose(steps, steps[0], rtol=1e-6)
     x = {"x0": float(time[0]), "dx": round(float(time[-1] - time[0]) / len(steps), 9)} if even else {"x": digits(time, 7)}
     trace: Any = go.Scatter
     if len(time) > MANY:

@@ -11,9 +11,10 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 from scipy.signal import welch
 
+from flexarm_env.identify.explain.bands import at_own_rate
 from flexarm_env.identify.explain.comparison import Comparison, Replay
 from flexarm_env.pictures.overlays import AS_GIVEN, CORRECTED, band
-from flexarm_env.pictures.plots import Floats, digits, in_steps, legend, with_layout
+from flexarm_env.pictures.plots import Floats, digits, in_steps, legend, where_measured, with_layout
 from flexarm_env.pictures.style import AFTER_LINE, BEFORE_LINE, INK, REGIMES
 from flexarm_env.recordings.recording import Recording
 
@@ -50,7 +51,8 @@ def drivers(comparison: Comparison, recordings: Sequence[Recording]) -> list[Dri
         )
     ]
     if "arm_angle" in comparison.noise:
-        found.append(Driver("arm angle", "rad", np.concatenate([one.measured["arm_angle"] for one in replays])))
+        angles = [between_readings(one.time, one.measured["arm_angle"]) for one in replays]
+        found.append(Driver("arm angle", "rad", np.concatenate(angles)))
     speeds = [_speed(one, comparison) for one in replays]
     if all(speed is not None for speed in speeds):
         found.append(Driver("arm speed", "rad/s", np.concatenate(speeds)))  # type: ignore[arg-type]
@@ -65,13 +67,14 @@ def _speed(one: Replay, comparison: Comparison) -> Floats | None:
     """Estimate the arm's speed [rad/s] from the measurements; None where neither speed nor angle was measured."""
     if "motor_speed" in one.measured:
         gain = comparison.arm.sensors["motor_speed"]["gain"] or 1.0
-        return np.asarray(one.measured["motor_speed"] / gain / comparison.arm.constants["drive"]["gear_ratio"])
+        speed = between_readings(one.time, one.measured["motor_speed"])
+        return np.asarray(speed / gain / comparison.arm.constants["drive"]["gear_ratio"])
     if "arm_angle" not in one.measured:
         return None
     width = max(int(SPEED_TIME / float(np.median(np.diff(one.time)))), 1)
-    return np.gradient(
-        np.convolve(np.pad(one.measured["arm_angle"], width, "edge"), np.ones(2 * width + 1) / (2 * width + 1), "valid"), one.time
-    )
+    angle = between_readings(one.time, one.measured["arm_angle"])
+    smooth = np.convolve(np.pad(angle, width, "edge"), np.ones(2 * width + 1) / (2 * width + 1), "valid")
+    return np.gradient(smooth, one.time)
 
 
 def versus_driver(driver: Driver, before: Comparison, after: Comparison | None, signal: str) -> go.Figure:
@@ -84,7 +87,8 @@ def versus_driver(driver: Driver, before: Comparison, after: Comparison | None, 
     regime = np.concatenate([one.regime for one in before.replays])
     for row, (_, comparison) in enumerate(models, start=1):
         off = residual(comparison, signal)
-        some = np.flatnonzero(np.isfinite(off))[:: max(len(off) // POINTS, 1)]
+        some = np.flatnonzero(np.isfinite(off) & np.isfinite(driver.values))
+        some = some[:: max(len(some) // POINTS, 1)]
         for code, (name, colour, symbol) in enumerate(REGIMES):
             chosen = some[regime[some] == code]
             marker = {"color": colour, "symbol": symbol, "size": 5, "opacity": 0.75}
@@ -111,15 +115,28 @@ def versus_driver(driver: Driver, before: Comparison, after: Comparison | None, 
 
 
 def residual(comparison: Comparison, signal: str) -> Floats:
-    """Compute a signal's error over its noise (samples,), in windows of 1 s, over all recordings in order."""
+    """Compute a signal's error over its noise (samples,), in windows of 1 s, over all recordings in order; NaN in gaps."""
     return np.concatenate([(r.measured[signal] - r.windows[signal]) / comparison.noise[signal] for r in comparison.replays])
 
 
+def between_readings(time: Floats, values: Floats) -> Floats:
+    """Interpolate a driver (samples,) between the readings of a slower sensor; NaN in gaps."""
+    return (
+        values
+        if not np.isnan(values).any()
+        else np.interp(time, *where_measured(time, values, values), left=np.nan, right=np.nan)
+    )
+
+
 def _medians(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    there = ~(np.isnan(x) | np.isnan(y))
+    x, y = x[there], y[there]
+    if not len(x):
+        return x, y
     edges = np.linspace(np.percentile(x, 0.5), np.percentile(x, 99.5), BINS + 1)
     place = np.digitize(x, edges)
     full = [k for k in range(1, BINS + 1) if (place == k).sum() >= 5]
-    return np.array([0.5 * (edges[k - 1] + edges[k]) for k in full]), np.array([np.nanmedian(y[place == k]) for k in full])
+    return np.array([0.5 * (edges[k - 1] + edges[k]) for k in full]), np.array([np.median(y[place == k]) for k in full])
 
 
 def spectrum(before: Comparison, after: Comparison | None, signal: str) -> go.Figure:
@@ -140,15 +157,14 @@ def spectrum(before: Comparison, after: Comparison | None, signal: str) -> go.Fi
 
 def amplitude(comparison: Comparison, signal: str) -> tuple[Floats, Floats]:
     """Estimate the residual's amplitude spectrum over that of the sensor's white noise, with its frequencies [Hz]."""
+    series = [at_own_rate(one, signal, float(np.median(np.diff(one.time)))) for one in comparison.replays]
     powers, weights = [], []
-    shortest = min(len(one.time) for one in comparison.replays)
+    shortest = min(len(errors) for errors, _ in series)
     frequency = np.zeros(0)
-    for one in comparison.replays:
-        rate = 1.0 / float(np.median(np.diff(one.time)))
-        off = (one.measured[signal] - one.windows[signal]) / comparison.noise[signal]
-        off = np.clip(np.nan_to_num(off), -LARGEST, LARGEST)
-        frequency, power = welch(off, rate, nperseg=min(SEGMENT, shortest), detrend=False)
-        powers.append(power * rate / 2.0)
+    for errors, interval in series:
+        off = np.clip(np.nan_to_num(errors / comparison.noise[signal]), -LARGEST, LARGEST)
+        frequency, power = welch(off, 1.0 / interval, nperseg=min(SEGMENT, shortest), detrend=False)
+        powers.append(power / interval / 2.0)
         weights.append(len(off))
     whole = np.average(powers, axis=0, weights=weights)
     return frequency[1:-1], np.sqrt(whole[1:-1])  # Welch scales both ends differently

@@ -8,12 +8,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from flexarm_env.arm import short_name
 from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.explain.comparison import Comparison
+from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.results import Addition, Candidate, Diagnosis
 from flexarm_env.sensors import known_sensors
 
 NOTHING = "–"
 _BARS = "▁▂▃▄▅▆▇█"
 _EIGHTHS = " ▏▎▍▌▋▊▉"
+FAULT_COLUMNS = ("recording", "fault", "size", "samples", "finding", "line that mends it")
 PARTS = ("moving fast", "moving slowly", "stuck")
 
 
@@ -135,6 +137,8 @@ def accepted(diagnosis: Diagnosis) -> list[Candidate]:
 def verdict(diagnosis: Diagnosis) -> str:
     """Write the verdict of a diagnosis in one to three sentences."""
     error = diagnosis.error
+    if diagnosis.verdict == "recordings":
+        return f"The recordings are at fault, and no effect was sought. {_faults(diagnosis.recordings)}"
     final = number(error["final"])
     if diagnosis.verdict == "nothing_missing":
         return f"No effect is missing: the arm explains these recordings to {final} × the noise."
@@ -148,6 +152,27 @@ def verdict(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "insufficient_data":
         return f"These recordings are insufficient for a diagnosis: the error is {final} × the noise."
     return " ".join([_missing(diagnosis), _doubt(diagnosis)]).strip()
+
+
+def _faults(faults: Sequence[Fault]) -> str:
+    """Describe the first fault in one sentence, with the line that mends it, and count the others."""
+    first = faults[0]
+    mend = f"; {first.hint} mends it" if first.hint else ""
+    rest = f" ({counted(len(faults) - 1, 'more fault')})" if len(faults) > 1 else ""
+    return f"{first.recording}: {first.message}{mend}{rest}."
+
+
+def fault_rows(faults: Sequence[Fault]) -> list[list[str]]:
+    """List faults as rows of a table: recording, fault, size, share of the samples, and the line that mends it."""
+    return [
+        [one.recording, one.kind, size_of(one), f"{100 * one.share:.2g} %" if one.rows else "all", one.message, one.hint]
+        for one in faults
+    ]
+
+
+def size_of(one: Fault) -> str:
+    """Format the size of a fault with its unit."""
+    return NOTHING if one.value is None else f"{number(one.value, 4)} {plain_unit(one.unit)}".strip()
 
 
 def _missing(diagnosis: Diagnosis) -> str:
@@ -176,7 +201,26 @@ def addition(result: Addition) -> str:
 
 def comparison(result: Comparison) -> str:
     """Write an arm's error on recordings in one sentence."""
+    closed = "" if result.closed_loop is None else f", by {number(result.closed_loop)} × in closed loop"
     return (
         f"Arm '{result.arm.name}' misses by {number(result.error)} × the noise in windows of 1 s, "
-        f"by {number(result.free_run)} × in one free run; 1 is perfect."
+        f"by {number(result.free_run)} × in one free run{closed}; 1 is perfect."
     )
+
+
+#: Heads of the table of errors in closed loop.
+LOOP_HEADS = ("recording", "quantity", "error over noise", "fit", "100 ‖e‖/‖y‖")
+
+
+def loop_rows(result: Comparison) -> list[list[str]]:
+    """Format the errors in closed loop by recording and quantity."""
+    return [
+        [
+            row.recording,
+            label_of(row.quantity) if row.quantity in known_sensors() else row.quantity,
+            number(row.error),
+            f"{row.fit:.1f} %" if math.isfinite(row.fit) else NOTHING,
+            f"{number(row.relative)} %" if math.isfinite(row.relative) else NOTHING,
+        ]
+        for row in result.loop_rows
+    ]

@@ -118,7 +118,7 @@ class Plant:
             commands: held from each sample to the next [A or V].
             intervals: times from sample to sample [s] where sampling is uneven.
             gains: (modes, 2 blocks + bodies, signals), feed the error against `measured` back.
-            measured: (samples, signals), needed with gains.
+            measured: (samples, signals), needed with gains; NaN where nothing was measured, which corrects nothing.
         """
         return self.play(self.delayed(commands), intervals, gains, measured)
 

@@ -50,10 +50,12 @@ def place_at(d: Numbers, n: Places, s: Numbers, physical: Numbers, command: floa
 def feed_back(
     d: Numbers, n: Places, s: Numbers, gains: Gains, measured: Samples, readings: Numbers, k: int,
 ) -> None:  # fmt: skip
-    """Correct the state by gains (modes, 2 blocks + bodies, signals) times the error of each reading."""
+    """Correct the state by gains (modes, 2 blocks + bodies, signals) times the error of each reading that was measured."""
     mode = int(s[at.MODE])
     size = 2 * n[at.BLOCKS]
     for j in range(n[at.SIGNALS]):
+        if math.isnan(measured[k, j]):
+            continue
         error = measured[k, j] - readings[k * n[at.SIGNALS] + j]
         for i in range(size):
             s[at.Z_START + i] += gains[mode, i, j] * error
@@ -81,7 +83,7 @@ def replay(
     """Apply commands (samples,) and write readings (samples · signals,), each taken before its command acts.
 
     `intervals` (samples,) holds the sampling times [s] where they are uneven, else nothing. With gains, each reading's
-    error against `measured` (samples, signals) is fed back (innovations form); without, both are empty.
+    error against `measured` (samples, signals) is fed back (innovations form), unless that is NaN; without, both are empty.
     """
     count = commands.shape[0]
     for k in range(count):

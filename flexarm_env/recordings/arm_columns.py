@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
 from flexarm_env.errors import InputError
-from flexarm_env.recordings.columns import ColumnMap, Source, native_sources
+from flexarm_env.parameters import INPUTS
+from flexarm_env.recordings.columns import ColumnMap, Source, check_names, native_sources
 from flexarm_env.recordings.formats.text import read_header
+from flexarm_env.sensors import known_sensors
 
 #: Bytes of a file in which its header must lie.
 _HEAD = 1 << 16
@@ -18,6 +21,7 @@ def layout_of(path: Path, columns: ColumnMap, require_signal: bool = True) -> tu
 
     The map is followed unless the header is FlexArm's own. It is followed there, too, where the file has every column that
     it names. A map of column numbers must agree with such a header in names and units, because any file has those numbers.
+    A map that names no places refines the header, and one of several files has the place of each column.
 
     Args:
         path: the file.
@@ -28,8 +32,13 @@ def layout_of(path: Path, columns: ColumnMap, require_signal: bool = True) -> tu
         The map, or None to follow the header; and a note where they differ, else "".
     """
     own, texts = _own_header(path)
-    if "time" not in own:
+    if columns.joins:
+        alone = stands_alone(path, columns, require_signal)
+        return (None, "read by its own header; the arm's [columns] are of several files") if alone else (columns, "")
+    if not own or ("time" not in own and not columns.refines):
         return columns, ""
+    if columns.refines:
+        return _refinement(columns, own, require_signal)
     by_number = all(source.key == "index" for source in columns.sources.values())
     found = _found(columns, texts)
     differing = [name for name, source in found.items() if own.get(name) != source]
@@ -40,6 +49,28 @@ def layout_of(path: Path, columns: ColumnMap, require_signal: bool = True) -> tu
     if by_number or not differing:
         return None, ""
     return (columns, "") if require_signal else (None, _note("its own header", "the arm's [columns] differ", differing))
+
+
+def stands_alone(path: Path, columns: ColumnMap, require_signal: bool = True) -> bool:
+    """Whether a file is a recording of FlexArm's own, and not one of the several files of an arm's map.
+
+    Args:
+        path: the file.
+        columns: the arm's map of several files.
+        require_signal: whether a recording must hold a signal.
+    """
+    own, texts = _own_header(path)
+    whole = "time" in own and set(INPUTS) & set(own) and (not require_signal or set(known_sensors()) & set(own))
+    command = columns.sources[check_names(tuple(columns.sources))]
+    mapped = {name: source for name, source in columns.sources.items() if source.file in ("", command.file)}
+    return bool(whole) and len(_found(replace(columns, sources=mapped), texts)) < len(mapped)
+
+
+def _refinement(columns: ColumnMap, own: dict[str, Source], require_signal: bool) -> tuple[ColumnMap, str]:
+    """Limit a map that refines a header to the columns that commands have; recordings must have all."""
+    kept = {name: source for name, source in columns.sources.items() if require_signal or name in own}
+    changed = [name for name, source in kept.items() if source.key == "header"]
+    return replace(columns, sources=kept), _note("its own header", "the arm's [columns] refine it", changed)
 
 
 def _own_header(path: Path) -> tuple[dict[str, Source], list[str]]:
@@ -63,7 +94,7 @@ def _found(columns: ColumnMap, texts: list[str]) -> dict[str, Source]:
     for name, source in columns.sources.items():
         place = numbers.get(str(source.place).strip()) if source.key == "column" else source.place
         if isinstance(place, int) and place < len(texts):
-            found[name] = Source(place, source.unit, source.sign, source.scale)
+            found[name] = replace(source, place=place, key="index")
     return found
 
 

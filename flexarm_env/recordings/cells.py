@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from flexarm_env.errors import InputError
 from flexarm_env.recordings.columns import ColumnMap
 from flexarm_env.recordings.messages import quoted
+from flexarm_env.sensors import known_sensors
 
 # Possessive, so that no cell takes time that grows faster than its length.
 _DECIMAL_COMMA = re.compile(r"\s*+[+-]?+\d++,\d++\s*+")
@@ -76,7 +78,7 @@ def _point(cell: str, decimal: str) -> str:
 def read_numbers(
     rows: list[str], lines: Sequence[int], labels: dict[int, str], width: int, even: bool, layout: ColumnMap
 ) -> NDArray[np.float64]:
-    """Read the (n, len(labels)) numbers of the columns in `labels`.
+    """Read the (n, len(labels)) numbers of the columns in `labels`; NaN for an empty cell of a signal.
 
     Args:
         rows: the text of each sample.
@@ -93,20 +95,45 @@ def read_numbers(
     delimiter = layout.delimiter
     plain = delimiter != " " or not any('"' in row for row in rows)
     if plain and even and max(labels) < width:
-        try:
-            read = np.loadtxt(
-                rows if layout.decimal == "." else [_point(row, layout.decimal) for row in rows],
-                delimiter=None if delimiter == " " else delimiter,
-                comments=None,
-                quotechar='"',
-                usecols=list(labels),
-                ndmin=2,
-            )
-            if len(read) == len(rows):  # fewer where a quote that opens in one row closes in another
-                return read
-        except ValueError:
-            pass
+        texts = rows if layout.decimal == "." else [_point(row, layout.decimal) for row in rows]
+        read = _quickly(texts, delimiter, list(labels))
+        if read is None:
+            read = _quickly(_filled(texts, delimiter), delimiter, list(labels))
+        needed = [i for i, name in enumerate(labels.values()) if name not in known_sensors()]
+        if read is not None and not np.isnan(read[:, needed]).any():
+            return read
     return np.array(list(_row_by_row(rows, lines, labels, width, layout)), dtype=np.float64)
+
+
+def _quickly(rows: list[str], delimiter: str, places: list[int]) -> NDArray[np.float64] | None:
+    """Read the numbers of columns by numpy's reader; None where it fails."""
+    try:
+        read = np.loadtxt(
+            rows,
+            delimiter=None if delimiter == " " else delimiter,
+            comments=None,
+            quotechar='"',
+            usecols=places,
+            ndmin=2,
+        )
+    except ValueError:
+        return None
+    return read if len(read) == len(rows) else None  # fewer where a quote that opens in one row closes in another
+
+
+def _filled(rows: list[str], delimiter: str) -> list[str]:
+    """Write "nan" into the empty cells of rows."""
+    if delimiter == " ":
+        return [re.sub(r"(?<!\S)NA(?!\S)", "nan", row) for row in rows]
+    blank = "[ \t]" if delimiter != "\t" else " "
+    end = re.escape(delimiter)
+    empty = re.compile(rf"(?:^|(?<={end})){blank}*+(?:NA{blank}*+)?+(?={end}|$)")
+    return [empty.sub("nan", row) for row in rows]
+
+
+def _is_absent(cell: str) -> bool:
+    """Whether a cell is that of a signal which was not measured; "NaN" is a number."""
+    return cell.strip(" \t") in ("", "NA")
 
 
 def _row_by_row(
@@ -115,7 +142,10 @@ def _row_by_row(
     """Yield the numbers of each row; raise InputError at the first fault."""
     for index, name in labels.items():
         if index >= width:
-            raise InputError(f"column '{name}': index {index}, but the rows have {width} cells; count from 0")
+            row, line = next(one for one in zip(rows, lines, strict=True) if count_cells(one[0], layout.delimiter) == width)
+            raise InputError(
+                f"row {line + 1}, column '{name}': index {index}, but the rows have {width} cells, as {quoted(row)}; count from 0"
+            )
     for row, line in zip(rows, lines, strict=True):
         where = f"row {line + 1}"
         try:
@@ -126,26 +156,30 @@ def _row_by_row(
             hint = _width_hint(row, len(cells), width, layout.delimiter)
             raise InputError(f"{where}: has {len(cells)} cells where {width} are expected; {hint}")
         for index, name in labels.items():
-            if not is_number(cells[index], layout.decimal):
+            absent = name in known_sensors() and _is_absent(cells[index])
+            if not absent and not is_number(cells[index], layout.decimal):
                 raise InputError(f"{where}, column '{name}': {_not_a_number(cells[index])}")
-        yield [float(_point(cells[index], layout.decimal)) for index in labels]
+        yield [math.nan if _is_absent(cell) else float(_point(cell, layout.decimal)) for cell in map(cells.__getitem__, labels)]
 
 
 def _width_hint(row: str, found: int, expected: int, delimiter: str) -> str:
+    stands = f"it is {quoted(row)}"
     if row.lstrip().startswith("#"):
-        return "a remark stands before the header; move it there or remove it"
+        return f"a remark stands before the header; {stands}"
     if found < expected:
-        return "is the row cut off?"
-    commas = " Or decimal commas: write 0.5, not 0,5" if delimiter == "," else ""
-    return f"are two rows run together, or does the header lack a name?{commas}"
+        return f"is the row cut off? {stands}"
+    commas = " Or are its commas decimal ones? Export with decimal points, or with ';' between cells" if delimiter == "," else ""
+    return f"are two rows run together, or does the header lack a name? {stands}.{commas}"
 
 
 def _not_a_number(cell: str) -> str:
     if not cell.strip():
-        return "is empty; a number made up would spoil the comparison: remove the row, or the column"
+        return "is empty; a replay needs time, command and reference in every row; only a signal may be absent"
     if _COMMA_AND_THREE.fullmatch(cell):
-        whole = quoted(cell.strip().replace(",", ""))[1:-1]
-        return f"{quoted(cell)} has a comma, which may mark thousands or decimals; write {whole} or a decimal point"
+        return (
+            f"{quoted(cell)} has a comma, which may mark thousands or decimals;"
+            " export without marks of thousands, or say decimal = ',' in [columns] if it is the decimal mark"
+        )
     if _DECIMAL_COMMA.fullmatch(cell):
-        return f"{quoted(cell)} has a decimal comma; write {quoted(cell.strip().replace(',', '.'))[1:-1]}"
-    return f"{quoted(cell)} is not a number; correct it or remove the row"
+        return f"{quoted(cell)} has a decimal comma; say decimal = ',' in [columns], or export with decimal points"
+    return f"{quoted(cell)} is not a number; correct it"

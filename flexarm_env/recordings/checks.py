@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexarm_env.errors import InputError
+from flexarm_env.recordings.clock import step_back_error
+from flexarm_env.sensors import known_sensors
 
 Floats = NDArray[np.float64]
 
@@ -17,6 +19,11 @@ LARGEST_READING = 1e7
 #: A step of time is no longer than so many median steps, since the commands meanwhile are unknown, and the median no shorter
 #: than this [s].
 LONGEST_STEP, SHORTEST_STEP = 10_000, 1e-7
+#: Of a number that is not finite, in a signal (True) and in a column that must be there in every row.
+_REMEDIES = {
+    True: "correct it, or leave the cell empty if nothing was measured",
+    False: "correct it; a replay needs time, command and reference in every row; only a signal may be absent",
+}
 
 
 def as_vector(name: str, values: ArrayLike) -> Floats:
@@ -34,41 +41,52 @@ def as_vector(name: str, values: ArrayLike) -> Floats:
     return array.astype(np.float64, copy=False)
 
 
-def check_samples(arrays: Mapping[str, Floats], lines: Sequence[int]) -> None:
-    """Check that numbers are finite and plausible and that time rises.
+def check_values(arrays: Mapping[str, Floats], lines: Sequence[int]) -> None:
+    """Check that numbers are finite and plausible. A signal alone may have NaN in rows in which it was not measured.
 
     Args:
         arrays: (n,) by column name, in SI.
         lines: the line of each sample in its file, for messages; empty where there is none.
 
     Raises:
-        InputError: at the first number or step of time that is not.
+        InputError: at the first number that is not, and for a signal that was never measured.
     """
-
-    def place(sample: int) -> str:
-        return f"row {lines[sample]}" if lines else f"sample {sample + 1}"
-
     for column, values in arrays.items():
-        bad = np.flatnonzero(~np.isfinite(values))
+        signal = column in known_sensors()
+        bad = np.flatnonzero(np.isinf(values) if signal else ~np.isfinite(values))
         if bad.size:
-            raise InputError(f"{place(bad[0])}, column '{column}': is {values[bad[0]]}; correct it or remove the row")
+            raise InputError(f"{_place(bad[0], lines)}, column '{column}': is {values[bad[0]]}; {_REMEDIES[signal]}")
         large = np.flatnonzero(np.abs(values) > LARGEST_READING)
         if large.size and column != "time":
             value = f"{values[large[0]]:g} in SI units, over {LARGEST_READING:g}"
-            raise InputError(f"{place(large[0])}, column '{column}': is {value}; is the unit right?")
-    time = arrays["time"]
+            raise InputError(f"{_place(large[0], lines)}, column '{column}': is {value}; is the unit right?")
+        if signal and np.isnan(values).all():
+            raise InputError(f"column '{column}': has no reading in any row; leave the column out")
+
+
+def check_time(time: Floats, lines: Sequence[int]) -> None:
+    """Check that time (n,) [s] is finite and rises in plausible steps.
+
+    Args:
+        time: from 0.
+        lines: the line of each sample in its file, for messages; empty where there is none.
+
+    Raises:
+        InputError: at the first step of time that does not; `RestartError` where the clock starts again.
+    """
+    check_values({"time": time}, lines)
     back = np.flatnonzero(np.diff(time) <= 0)
     if back.size:
-        i = int(back[0])
-        what = "repeats" if time[i + 1] == time[i] else "goes back"
-        raise InputError(
-            f"{place(i + 1)}, column 'time': {what}, {time[i + 1]:.9g} s after {time[i]:.9g} s"
-            " (from the first sample); sort the rows and remove repeated ones"
-        )
-    _check_steps(np.diff(time), place)
+        raise step_back_error(time, int(back[0]) + 1, _place(int(back[0]) + 1, lines))
+    _check_steps(np.diff(time), lines)
 
 
-def _check_steps(steps: Floats, place: Callable[[int], str]) -> None:
+def _place(sample: int, lines: Sequence[int]) -> str:
+    """Name a sample in a message by its line, else by its number."""
+    return f"row {lines[sample]}" if lines else f"sample {sample + 1}"
+
+
+def _check_steps(steps: Floats, lines: Sequence[int]) -> None:
     """Check steps of time (n - 1,) [s]."""
     if not steps.size:
         return
@@ -78,8 +96,8 @@ def _check_steps(steps: Floats, place: Callable[[int], str]) -> None:
     i = int(steps.argmax())
     if steps[i] > LONGEST_STEP * usual:
         raise InputError(
-            f"{place(i + 1)}, column 'time': {steps[i]:.6g} s after the row before, where samples are {usual:.3g} s apart;"
-            " correct it, or cut the recording in two there"
+            f"{_place(i + 1, lines)}, column 'time': {steps[i]:.6g} s after the row before, where samples are {usual:.3g} s"
+            " apart; correct it, or cut the recording in two there"
         )
 
 

@@ -2,26 +2,33 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from flexarm_env import units
+from flexarm_env.control.law import ControlLaw
+from flexarm_env.control.table import law_from_table
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import read_toml
-from flexarm_env.recordings.columns import UNITS, ColumnMap, Source, check_names
+from flexarm_env.parameters import INPUTS
+from flexarm_env.recordings.checks import check_conditions
+from flexarm_env.recordings.column_entries import PLACES, listed, read_sources, typed
+from flexarm_env.recordings.columns import UNITS, ColumnMap, Source, check_names, part_names
+from flexarm_env.recordings.messages import file_error
 
 _SETTINGS: dict[str, type] = {"delimiter": str, "header_prefix": str, "skip_rows": int, "decimal": str}
-_PLACES: dict[str, type] = {"column": str, "index": int, "variable": str}
 
 
 def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap) -> ColumnMap:
     """Load a column map from a TOML file with a `[columns]` table, or from such a table as a dict.
 
-    Each FlexArm name holds `column` (header text), `index` (0-based) or `variable` (MATLAB), with `unit`,
-    and `sign` or `scale` if needed; beside them stand `delimiter`, `header_prefix`, `skip_rows`, `decimal`.
+    Each FlexArm name holds `column` (header text), `index` (0-based) or `variable` (a path such as "data.signals(2).values",
+    with `row` or `index` of a matrix), with `unit`, and `sign` or `scale` if needed; `file` names another file that has it.
+    Entries that all lack a place refine FlexArm's own header. A signal also has `ignore`, `range`, `repeats`, `wrap` and
+    `shift`, time `shift`. Beside them stand `delimiter`, `header_prefix`, `skip_rows`, `decimal`, and a table `conditions` of
+    columns that hold one number each, such as a gain. A file may have a `[controller]` table, too.
 
     Args:
         columns: the file, or the table.
@@ -37,21 +44,24 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
         ...     "current": {"column": "I", "unit": "mA"},
         ...     "arm_angle": {"column": "encoder", "unit": "deg", "sign": -1},
         ... }
-        >>> load_columns(table).sources["arm_angle"]
-        Source(place='encoder', unit='deg', sign=-1, scale=1.0, key='column')
+        >>> source = load_columns(table).sources["arm_angle"]
+        >>> source.key, source.place, source.unit, source.sign
+        ('column', 'encoder', 'deg', -1)
     """
     if isinstance(columns, ColumnMap):
         return columns
     if isinstance(columns, Mapping):
         return _column_map(columns)
     path = Path(columns)
-    table = read_toml(path).get("columns")
+    tables = read_toml(path)
+    table = tables.get("columns")
     if not isinstance(table, dict):
         raise InputError(f"{path}: has no [columns] table; put the map under a line [columns]")
     try:
-        return _column_map(table)
+        layout = _column_map(table)
+        return replace(layout, controller=_law(tables["controller"], layout)) if "controller" in tables else layout
     except InputError as error:
-        raise InputError(f"{path}: {error}") from None
+        raise file_error(path, error) from None
 
 
 def _column_map(table: Mapping[str, Any]) -> ColumnMap:
@@ -59,18 +69,57 @@ def _column_map(table: Mapping[str, Any]) -> ColumnMap:
     sources: dict[str, Source] = {}
     for key, value in table.items():
         if key in UNITS:
-            sources[key] = _source(key, value)
-        elif key not in _SETTINGS:
-            raise InputError(f"[columns]: unknown key {key!r}{did_you_mean(str(key), (*UNITS, *_SETTINGS))}")
-    if len({source.key == "variable" for source in sources.values()}) > 1:
-        raise InputError("[columns]: some entries have 'variable' and some 'column' or 'index'; keep to one kind")
-    settings = {key: _typed(key, table[key], _SETTINGS[key]) for key in _SETTINGS if key in table}
+            parts = read_sources(key, value)
+            sources |= dict(zip(part_names(key, len(parts)), parts, strict=True))
+        elif key not in (*_SETTINGS, "conditions"):
+            raise InputError(f"[columns]: unknown key {key!r}{did_you_mean(str(key), (*UNITS, *_SETTINGS, 'conditions'))}")
+    settings = {key: typed(key, table[key], _SETTINGS[key]) for key in _SETTINGS if key in table}
     _check_settings(settings)
-    try:
-        check_names(tuple(sources))
-    except InputError as error:
-        raise InputError(f"[columns] {error}") from None
-    return ColumnMap(sources, **settings)
+    columns = ColumnMap(sources, **settings, conditions=_conditions(table.get("conditions", {})))
+    _check_kinds(columns)
+    if not (table and columns.refines):
+        try:
+            check_names(tuple(sources))
+        except InputError as error:
+            raise InputError(f"[columns] {error}") from None
+    return columns
+
+
+def _check_kinds(columns: ColumnMap) -> None:
+    """Refuse entries that cannot be of one file."""
+    if columns.refines and columns.conditions:
+        raise InputError("[columns]: has conditions in columns, so name the places of the others, too")
+    by_file: dict[str, set[str]] = {}
+    for name, source in (columns.sources | columns.conditions).items():
+        if source.key == "header" and not columns.refines:
+            raise InputError(f"[columns] {name}: give exactly one of {listed(PLACES)}, as the other entries do")
+        if source.key != "rate" and not (name.startswith("time") and columns.joins):
+            by_file.setdefault(source.file, set()).add("variable" if source.key == "variable" else "column")
+    if not columns.joins and any(len(kinds) > 1 for kinds in by_file.values()):
+        raise InputError("[columns]: some entries have 'variable' and some 'column' or 'index'; keep to one kind")
+
+
+def _conditions(table: Any) -> dict[str, Source]:
+    """Check the sources of conditions."""
+    if not isinstance(table, Mapping):
+        raise InputError("[columns] conditions: is not a table; write it under a line [columns.conditions]")
+    for name in table:
+        if name in UNITS:
+            raise InputError(f"[columns.conditions]: {name!r} is a column; give the condition another name")
+        check_conditions({str(name): 0.0})
+    return {str(name): read_sources(f"conditions.{name}", entry)[0] for name, entry in table.items()}
+
+
+def _law(table: Any, layout: ColumnMap) -> ControlLaw:
+    """Read the `[controller]` table beside a column map."""
+    kind = next((kind for kind in INPUTS if kind in layout.sources), None)
+    if kind is None:
+        raise InputError("[controller] has a command that [columns] does not name; add current = {} or voltage = {} there")
+    law = law_from_table(table, kind)
+    for signal in law.signals:
+        if signal not in layout.sources:
+            raise InputError(f"controller.{signal} feeds back a signal that [columns] does not name; add it there")
+    return law
 
 
 def _check_settings(settings: Mapping[str, Any]) -> None:
@@ -80,43 +129,7 @@ def _check_settings(settings: Mapping[str, Any]) -> None:
         raise InputError(f"[columns]: delimiter is {delimiter!r}; write one character, such as ',' ';' or '\\t'")
     if decimal not in (".", ","):
         raise InputError(f"[columns]: decimal is {decimal!r}; write '.' or ','")
-    if decimal == delimiter:
+    if decimal == delimiter and "delimiter" in settings:  # without one the file's first line may still give it
         raise InputError("[columns]: decimal and delimiter are both ','; set delimiter = ';' or what the file has")
     if settings.get("skip_rows", 0) < 0:
         raise InputError("[columns]: skip_rows is negative; write the number of lines to drop")
-
-
-def _source(name: str, entry: Any) -> Source:
-    """Check one entry of a `[columns]` table."""
-    where = f"[columns] {name}"
-    if not isinstance(entry, Mapping):
-        raise InputError(f"{where}: is {entry!r}; write {{column = 'header text', unit = '{UNITS[name]}'}}")
-    allowed = (*_PLACES, "unit", "sign", "scale")
-    for key in entry:
-        if key not in allowed:
-            raise InputError(f"{where}: unknown key {key!r}{did_you_mean(str(key), allowed)}")
-    kinds = [kind for kind in _PLACES if kind in entry]
-    if len(kinds) != 1:
-        raise InputError(f"{where}: give exactly one of 'column', 'index' and 'variable'")
-    place = _typed(f"{name}: {kinds[0]}", entry[kinds[0]], _PLACES[kinds[0]])
-    if place == "" or (isinstance(place, int) and place < 0):
-        raise InputError(f"{where}: {kinds[0]} is {place!r}; columns count from 0")
-    if "unit" not in entry:
-        raise InputError(f"{where}: has no unit; add unit = '{UNITS[name]}' or what the file has")
-    unit = _typed(f"{name}: unit", entry["unit"], str)
-    sign, scale = entry.get("sign", 1), entry.get("scale", 1.0)
-    if isinstance(sign, bool) or sign not in (1, -1):
-        raise InputError(f"{where}: sign is {sign!r}; write 1 or -1, and other factors as scale")
-    number, _ = units.split(scale) if isinstance(scale, str) else (_typed(f"{name}: scale", scale, float), "")
-    if not math.isfinite(number) or number == 0:
-        raise InputError(f"{where}: scale is {scale!r}; write a number that is not zero")
-    return Source(place, unit, int(sign), scale, kinds[0])
-
-
-def _typed(key: str, value: Any, kind: type) -> Any:
-    """Check the type of a TOML value; an integer serves as a float."""
-    accepted = (int, float) if kind is float else kind
-    if isinstance(value, bool) or not isinstance(value, accepted):
-        words = {str: "a text", int: "a whole number", float: "a number"}
-        raise InputError(f"[columns] {key}: is {value!r}; write {words[kind]}")
-    return units.as_float(value) if isinstance(value, int | float) and kind is float else value

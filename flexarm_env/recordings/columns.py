@@ -8,8 +8,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from flexarm_env import units
+from flexarm_env.control.law import ControlLaw
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.parameters import INPUTS
+from flexarm_env.recordings.corrections import Corrections
 from flexarm_env.sensors import known_sensors
 
 UNITS = {"time": "s", **INPUTS, **{name: sensor.unit for name, sensor in known_sensors().items()}, "reference": "rad"}
@@ -23,18 +25,29 @@ class Source:
     """The place of one quantity in a file, and its conversion to SI: value × sign × scale, in `unit`.
 
     Attributes:
-        place: header text, 0-based column number, or name of a MATLAB variable.
-        unit: unit of the numbers in the file.
+        place: header text, 0-based column number, path of a variable such as "data.signals(2).values", or a rate [Hz].
+        unit: unit of the numbers in the file; "" for that of the file's own header.
         sign: 1 or -1.
         scale: a plain factor, or a quantity such as "1 rad/m".
-        key: of the entry that names the place: "column", "index" or "variable".
+        key: of the entry that names the place: "column", "index", "variable", "rate" (of time alone, evenly spaced), or
+            "header" for the column of that name in FlexArm's own header.
+        row: of a variable that is a matrix, from 0; None for all.
+        cut: its column, from 0; None for all.
+        file: name of the file that has it, in which "*" stands for the name of the run; "" for the file that is read.
+        time: where that file has its time, whose parts are added; empty for the entry of the map.
+        corrections: of a signal, in SI; of time the shift of all signals.
     """
 
-    place: str | int
+    place: str | int | float
     unit: str
     sign: int = 1
     scale: str | float = 1.0
     key: str = "index"
+    row: int | None = None
+    cut: int | None = None
+    file: str = ""
+    time: tuple[Source, ...] = ()
+    corrections: Corrections = field(default_factory=Corrections)
 
 
 @dataclass(frozen=True)
@@ -47,6 +60,8 @@ class ColumnMap:
         header_prefix: the header is the last of the leading lines that start with it; "" if it has no mark.
         skip_rows: lines to drop at the top.
         decimal: "." or ",".
+        conditions: the place of each condition that the file states as a column or variable of equal numbers.
+        controller: the law under which the recordings were made, if it stands beside the map.
     """
 
     sources: dict[str, Source] = field(default_factory=dict)
@@ -54,6 +69,36 @@ class ColumnMap:
     header_prefix: str = ""
     skip_rows: int = 0
     decimal: str = "."
+    conditions: dict[str, Source] = field(default_factory=dict)
+    controller: ControlLaw | None = None
+
+    @property
+    def refines(self) -> bool:
+        """Whether it names no place of any column, and so refines FlexArm's own header of a file."""
+        return all(source.key in ("header", "rate") for source in self.sources.values())
+
+    @property
+    def joins(self) -> bool:
+        """Whether it makes one recording of several files."""
+        return any(source.file for source in self.sources.values())
+
+
+def part_names(name: str, count: int) -> list[str]:
+    """List the names of a quantity whose columns are added, such as seconds and nanoseconds of time.
+
+    Examples:
+        >>> from flexarm_env.recordings.columns import part_names, quantity_of
+        >>> part_names("time", 2)
+        ['time', 'time (2)']
+        >>> quantity_of("time (2)")
+        'time'
+    """
+    return [name, *(f"{name} ({number})" for number in range(2, count + 1))]
+
+
+def quantity_of(name: str) -> str:
+    """Find the quantity of which a column is a part, see `part_names`."""
+    return name.partition(" (")[0]
 
 
 def check_names(names: Sequence[str]) -> str:
@@ -108,7 +153,7 @@ def si_factor(name: str, source: Source, calibration: Mapping[str, float]) -> fl
     Raises:
         InputError: for a unit that does not exist or does not convert, or volts without a calibration.
     """
-    unit = UNITS[name]
+    unit = UNITS[quantity_of(name)]
     in_volts = name in CALIBRATED and _in_volts(source)
     if in_volts and name not in calibration:
         raise InputError(
@@ -121,6 +166,13 @@ def si_factor(name: str, source: Source, calibration: Mapping[str, float]) -> fl
         return source.sign * units.factor(source.unit, unit, source.scale)
     except InputError as error:
         raise InputError(f"column '{name}': {error}") from None
+
+
+def base_value(number: float, source: Source) -> float:
+    """Convert a number of the file to SI base units."""
+    scale, scale_unit = (float(source.scale), "") if isinstance(source.scale, int | float) else units.split(source.scale)
+    factor = source.sign * scale * (units.base_value(f"1 {scale_unit}") if scale_unit else 1.0)
+    return number * factor * (units.base_value(f"1 {source.unit}") if source.unit not in ("", "1") else 1.0)
 
 
 def _in_volts(source: Source) -> bool:

@@ -12,16 +12,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flexarm_env.control.law import ControlLaw
 from flexarm_env.display import Shown
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import write_whole
 from flexarm_env.parameters import INPUTS
-from flexarm_env.recordings.checks import as_vector, check_conditions, check_samples
+from flexarm_env.recordings.checks import as_vector, check_conditions, check_time, check_values
+from flexarm_env.recordings.clock import RestartError
 from flexarm_env.recordings.column_maps import load_columns
-from flexarm_env.recordings.columns import UNITS, ColumnMap, check_calibration, check_names
+from flexarm_env.recordings.columns import UNITS, ColumnMap, Source, check_calibration, check_names
 from flexarm_env.recordings.conditions import CONDITIONS
-from flexarm_env.recordings.files import PathLike, files_of, read_bytes
+from flexarm_env.recordings.corrections import corrected
+from flexarm_env.recordings.files import PathLike, read_bytes
 from flexarm_env.recordings.formats.catalogue import format_of
+from flexarm_env.recordings.joined import read_joined, recording_files, run_name
 from flexarm_env.recordings.messages import file_error
 from flexarm_env.sensors import known_sensors
 
@@ -41,10 +45,12 @@ class Recording(Shown):
         input_kind: "current" or "voltage".
         command: (n,) [A or V], the commanded input of the drive.
         signals: (n,) each, by name: arm_angle [rad], motor_speed [rad/s], strain_mid [V], strain_base [V],
-            tip_deflection [m]; none in commands that are only to be played.
+            tip_deflection [m]; none in commands that are only to be played. NaN where a signal was not measured: between
+            the readings of a slower sensor, and in its gaps.
         reference: (n,) [rad], the commanded arm angle, or None.
         conditions: known conditions in SI. A replay takes up `payload` [kg] alone. The others inform a person, also
             `start` [s], how long the run had gone on before the first sample: times of effects count from that sample.
+        controller: the law under which it was made, if its column map states one.
         source: the path it was read from; "" if from none.
         sha256: of that file's content; "" if from none.
         notes: one line each on how the recording was read or made, where a person might expect otherwise.
@@ -58,6 +64,7 @@ class Recording(Shown):
     signals: dict[str, Floats]
     reference: Floats | None = None
     conditions: dict[str, float] = field(default_factory=dict)
+    controller: ControlLaw | None = None
     source: str = ""
     sha256: str = ""
     notes: tuple[str, ...] = ()
@@ -74,7 +81,8 @@ class Recording(Shown):
     def __repr__(self) -> str:
         gaps = f", {len(self.gaps)} gaps" if self.gaps else ""
         extent = f"{len(self)} samples, {self.duration:.4g} s at {1 / self.sample_time:.4g} Hz{gaps}"
-        return f"Recording({self.name!r}: {extent}, {self.input_kind} -> {', '.join(self.signals)})"
+        signals = [f"{name}{_share_measured(values)}" for name, values in self.signals.items()]
+        return f"Recording({self.name!r}: {extent}, {self.input_kind} -> {', '.join(signals)})"
 
     @property
     def sample_time(self) -> float:
@@ -105,14 +113,14 @@ class Recording(Shown):
             time: (n,) [s], rising; it is shifted to start at 0.
             input_kind: "current" or "voltage".
             command: (n,) [A or V].
-            signals: (n,) each, by name, in SI.
+            signals: (n,) each, by name, in SI; NaN where one was not measured.
             reference: (n,) [rad].
             conditions: known conditions in SI.
             require_signal: whether there must be a signal; False takes commands alone, to be played.
 
         Raises:
             InputError: for an unknown name, lengths that differ, fewer than two samples, numbers that are not
-                finite, or time that does not rise.
+                finite (but NaN in a signal), a signal without a reading, or time that does not rise.
 
         Examples:
             >>> import numpy as np
@@ -132,8 +140,10 @@ class Recording(Shown):
             columns["reference"] = reference
         try:
             arrays = {column: as_vector(column, values) for column, values in columns.items()}
-            recording = _recording(name, arrays, dict(conditions or {}), ())
+            recording = _recording(name, arrays, dict(conditions or {}))
             _check_signal(recording, require_signal)
+        except RestartError as error:
+            raise error.of(name) from None
         except InputError as error:
             raise InputError(f"{name}: {error}") from None
         return recording
@@ -146,7 +156,7 @@ class Recording(Shown):
         calibration: Mapping[str, float] | None = None,
         require_signal: bool = True,
     ) -> Recording:
-        r"""Read a recording from a CSV file, or by a column map from any text table or .mat file.
+        r"""Read a recording from a CSV file, or by a column map from any file of another logger.
 
         Args:
             path: the file. Its time is shifted to start at 0.
@@ -183,13 +193,20 @@ class Recording(Shown):
         check_calibration(gains)
         path = Path(path)
         try:
-            content = read_bytes(path)
-            table = format_of(path).table(content, layout)
-            recording = _recording(path.stem, table.in_si(gains), table.conditions, table.lines)
+            if layout is not None and layout.joins:
+                table, checksum = read_joined(path, layout, gains)
+                name = run_name(layout, path) or path.resolve().parent.name
+                recording = _recording(name, table.values, table.conditions, (), table.sources)
+            else:
+                content = read_bytes(path)
+                table = format_of(path).table(content, layout)
+                checksum = hashlib.sha256(content).hexdigest()
+                recording = _recording(path.stem, table.in_si(gains), table.conditions, table.lines, table.sources)
             _check_signal(recording, require_signal, " to its header" if layout is None else " to [columns]")
         except InputError as error:
             raise file_error(path, error) from None
-        return replace(recording, source=str(path), sha256=hashlib.sha256(content).hexdigest())
+        controller = None if layout is None else layout.controller
+        return replace(recording, controller=controller, source=str(path), sha256=checksum)
 
     @classmethod
     def read_all(
@@ -199,7 +216,7 @@ class Recording(Shown):
         calibration: Mapping[str, float] | None = None,
         require_signal: bool = True,
     ) -> list[Recording]:
-        """Read the recordings in files and folders; a folder stands for its CSV and .mat files, sorted by name.
+        """Read the recordings in files and folders; a folder stands for those in it, sorted by name.
 
         Where names would come twice, they have the folder's name before them. Arguments as `read`.
 
@@ -215,8 +232,8 @@ class Recording(Shown):
             >>> [run.name for run in Recording.read_all("runs")]
             ['pulse', 'square']
         """
-        files = files_of([paths] if isinstance(paths, (str, os.PathLike)) else paths)
         layout = None if columns is None else load_columns(columns)
+        files = recording_files([paths] if isinstance(paths, (str, os.PathLike)) else paths, layout)
         recordings = [cls.read(file, layout, calibration, require_signal) for file in files]
         return with_distinct_names(recordings)
 
@@ -245,16 +262,17 @@ class Recording(Shown):
             columns["reference"] = self.reference
         remarks = [f"# {name} = {value!r} {CONDITIONS.get(name, '')}".rstrip() for name, value in self.conditions.items()]
         header = ",".join(f"{name} [{UNITS[name]}]" for name in columns)
-        rows = zip(*(map(repr, values.tolist()) for values in columns.values()), strict=True)
+        rows = zip(*map(_cells, columns.values()), strict=True)
         write_whole(Path(path), "\n".join([*remarks, header, *map(",".join, rows), ""]))
 
     def part(self, start: float = 0.0, stop: float | None = None) -> Recording:
         """Cut out the samples with start <= time < stop [s]; without `stop`, up to the end.
 
-        Its time starts at 0 again, and `conditions["start"]` says how long the run had gone on before.
+        Its time starts at 0 again, and `conditions["start"]` says how long the run had gone on before. A signal without a
+        reading there is left out.
 
         Raises:
-            InputError: if fewer than two samples lie there.
+            InputError: if fewer than two samples lie there, or no reading.
 
         Examples:
             >>> from flexarm_env import Recording
@@ -271,24 +289,34 @@ class Recording(Shown):
             raise InputError(f"{self.name}: fewer than two samples from {start} to {stop} s; it lasts {self.duration:g} s")
         cut = slice(first, last)
         before = self.conditions.get("start", 0.0) + float(self.time[first])
+        signals = {name: values[cut].copy() for name, values in self.signals.items() if not np.isnan(values[cut]).all()}
+        if self.signals and not signals:
+            raise InputError(f"{self.name}: nothing was measured from {start} to {stop} s; take another part")
         return replace(
             self,
             time=self.time[cut] - self.time[first],
             command=self.command[cut].copy(),
-            signals={name: values[cut].copy() for name, values in self.signals.items()},
+            signals=signals,
             reference=None if self.reference is None else self.reference[cut].copy(),
             conditions=self.conditions | ({"start": before} if before else {}),
         )
 
 
-def _recording(name: str, arrays: dict[str, Floats], conditions: dict[str, float], lines: Sequence[int]) -> Recording:
-    """Check (n,) arrays in SI, by column name, and make a recording of them.
+def _recording(
+    name: str,
+    arrays: dict[str, Floats],
+    conditions: dict[str, float],
+    lines: Sequence[int] = (),
+    sources: Mapping[str, Source] | None = None,
+) -> Recording:
+    """Check (n,) arrays in SI, by column name, correct signals, and make a recording of them.
 
     Args:
         name: for tables and plots.
         arrays: by column name.
         conditions: in SI.
         lines: the line of each sample in its file, for messages; empty where there is none.
+        sources: the columns in a file, with their corrections; None for arrays from elsewhere.
     """
     kind = check_names(tuple(arrays))
     lengths = {column: len(values) for column, values in arrays.items()}
@@ -298,7 +326,10 @@ def _recording(name: str, arrays: dict[str, Floats], conditions: dict[str, float
         raise InputError(f"has {lengths['time']} samples; it needs at least two")
     with np.errstate(over="ignore", invalid="ignore"):
         arrays["time"] = arrays["time"] - arrays["time"][0]
-    check_samples(arrays, lines)
+    check_time(arrays["time"], lines)
+    corrections = {column: source.corrections for column, source in (sources or {}).items()}
+    arrays, notes = corrected(arrays, corrections)
+    check_values(arrays, lines)
     check_conditions(conditions)
     return Recording(
         name=name,
@@ -308,7 +339,19 @@ def _recording(name: str, arrays: dict[str, Floats], conditions: dict[str, float
         signals={signal: arrays[signal] for signal in known_sensors() if signal in arrays},
         reference=arrays.get("reference"),
         conditions=conditions,
+        notes=notes,
     )
+
+
+def _share_measured(values: Floats) -> str:
+    """Format the share of rows in which a signal was measured; "" for all of them."""
+    share = 1.0 - float(np.isnan(values).mean())
+    return f" ({100.0 * share:.3g} % measured)" if share < 1.0 else ""
+
+
+def _cells(values: Floats) -> list[str]:
+    """Write numbers with all their digits, and an empty cell for NaN."""
+    return ["" if value != value else repr(value) for value in values.tolist()]
 
 
 def _check_signal(recording: Recording, required: bool, place: str = "") -> None:
@@ -321,8 +364,8 @@ def with_distinct_names(recordings: Sequence[Recording]) -> list[Recording]:
     """Rename recordings so that their names differ: by their folder, else by their path."""
     sources = [Path(recording.source) for recording in recordings]
     for names in (
-        [source.stem for source in sources],
-        [f"{source.parent.name}/{source.stem}" for source in sources],
+        [recording.name for recording in recordings],
+        [f"{source.parent.name}/{recording.name}" for source, recording in zip(sources, recordings, strict=True)],
         [str(source) for source in sources],
     ):
         if len(set(names)) == len(names):

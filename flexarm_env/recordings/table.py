@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from flexarm_env.recordings.columns import Source, si_factor
+from flexarm_env.recordings.columns import Source, quantity_of, si_factor
 
 #: Bytes.
 LARGEST_FILE = 256 * 2**20
@@ -41,10 +41,16 @@ class Table:
         Raises:
             InputError: for a unit that does not convert.
         """
-        found = {}
+        found: dict[str, NDArray[np.float64]] = {}
         for name, values in self.values.items():
-            factor = si_factor(name, self.sources[name], calibration)
+            factor, quantity = si_factor(name, self.sources[name], calibration), quantity_of(name)
             with np.errstate(over="ignore", invalid="ignore"):  # an overflow is reported with its row
                 # Time counts from its first sample, subtracted before scaling so that no digit is lost.
-                found[name] = (values - values[0] if name == "time" else values) * factor
+                part = (values - values[0] if quantity == "time" else values) * factor
+                found[quantity] = found[quantity] + part if quantity in found else part
         return found
+
+    def first_time(self, calibration: Mapping[str, float]) -> float:
+        """Compute the time of the first sample on the clock of the file [s], which `in_si` counts from."""
+        parts = {name: values for name, values in self.values.items() if quantity_of(name) == "time"}
+        return float(sum(values[0] * si_factor(name, self.sources[name], calibration) for name, values in parts.items()))

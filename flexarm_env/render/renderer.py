@@ -55,6 +55,10 @@ class Renderer:
         self._window: Any = None
         self._clock: Any = None
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # A copy opens a window of its own.
+        return Renderer, (self.mode, self.length, self.fps, self.gages, self.exaggeration)
+
     def draw(self, scene: Scene) -> NDArray[np.uint8] | None:
         """Draw a scene.
 

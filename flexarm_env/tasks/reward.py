@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import inspect
 import math
 from collections.abc import Callable
@@ -88,6 +89,8 @@ class RewardTerm:
             if not (value is math or _is_number(value)):
                 raise InputError(f"{where} uses '{name}'; a term uses its quantities, math, and numbers of its file only")
         self._try()
+        with contextlib.suppress(OSError):  # the kernel is built from it; a function that was sent to a process has no file
+            vars(self.function).setdefault("source", inspect.getsource(self.function))
 
     @property
     def name(self) -> str:

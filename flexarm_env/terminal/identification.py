@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,13 +14,28 @@ from flexarm_env.terminal.progress import progress
 
 if TYPE_CHECKING:
     from flexarm_env.identify.explain.comparison import Comparison
+    from flexarm_env.identify.inspect.overview import Overview
     from flexarm_env.identify.results import Addition, Diagnosis, Fit
 
 
+def inspect(arm: Arm, recordings: Sequence[Recording]) -> Overview:
+    """Look at recordings before anything is fitted."""
+    from flexarm_env.identify.inspect.overview import overview
+
+    with progress("inspecting") as bar:
+        return overview(arm, list(recordings), bar)
+
+
 def compare(arm: Arm, recordings: Sequence[Recording], rate: float | None = None) -> Comparison:
-    """Compare an arm with its recordings."""
+    """Compare an arm with its recordings; faults of these are among the notes."""
     with progress("comparing") as bar:
-        return flexarm_env.compare(arm, list(recordings), progress=bar, rate=rate)
+        found = flexarm_env.compare(arm, list(recordings), progress=bar, rate=rate)
+        return replace(found, notes=[*faults(arm, recordings), *found.notes])
+
+
+def faults(arm: Arm, recordings: Sequence[Recording]) -> list[str]:
+    """List the faults of recordings, a line each."""
+    return flexarm_env.inspect_recordings(arm, list(recordings)).notes
 
 
 def fit(arm: Arm, recordings: Sequence[Recording], seed: int, rate: float | None = None) -> Fit:

@@ -10,10 +10,11 @@ from flexarm_env.arm import Arm
 from flexarm_env.effects import Catalogue, catalogue
 from flexarm_env.effects.catalogue import load_effect
 from flexarm_env.errors import InputError
-from flexarm_env.recordings.arm_columns import layout_of
+from flexarm_env.recordings.arm_columns import layout_of, stands_alone
 from flexarm_env.recordings.column_maps import load_columns
-from flexarm_env.recordings.columns import CALIBRATED
+from flexarm_env.recordings.columns import CALIBRATED, ColumnMap
 from flexarm_env.recordings.files import files_of
+from flexarm_env.recordings.joined import recording_files
 from flexarm_env.recordings.recording import Recording, with_distinct_names
 
 
@@ -37,18 +38,33 @@ def read_recordings(arm: Arm, paths: Sequence[Path], columns: Path | None, requi
     if columns is not None or not arm.columns:
         recordings = Recording.read_all(paths, columns, calibration(arm), require_signal)
     else:
-        recordings = with_distinct_names([_read(arm, file, require_signal) for file in files_of(paths)])
+        layout = _layout(arm)
+        files = _files(paths, layout, require_signal)
+        recordings = with_distinct_names([_read(arm, file, layout, require_signal) for file in files])
     for recording in recordings:
         _check_fits(arm, recording, require_signal)
     return recordings
 
 
-def _read(arm: Arm, file: Path, require_signal: bool) -> Recording:
-    """Read one file by the arm's column map or by its header."""
+def _layout(arm: Arm) -> ColumnMap:
+    """Load the arm's column map."""
     try:
-        columns = load_columns(arm.columns or {})
+        return load_columns(arm.columns or {})
     except InputError as error:
         raise InputError(f"arm '{arm.name}': {error}") from None
+
+
+def _files(paths: Sequence[Path], columns: ColumnMap, require_signal: bool) -> list[Path]:
+    """List the file of each recording; where the arm's are in several files, others may stand alone."""
+    if not columns.joins:
+        return recording_files(paths, columns)
+    alone = [path for path in paths if path.is_file() and stands_alone(path, columns, require_signal)]
+    others = [path for path in paths if path not in alone]
+    return [*(files_of(alone) if alone else []), *(recording_files(others, columns) if others or not alone else [])]
+
+
+def _read(arm: Arm, file: Path, columns: ColumnMap, require_signal: bool) -> Recording:
+    """Read one file by the arm's column map or by its header."""
     layout, note = layout_of(file, columns, require_signal)
     recording = Recording.read(file, layout, calibration(arm), require_signal)
     return replace(recording, notes=(*recording.notes, note)) if note else recording

@@ -16,8 +16,10 @@ def of_comparison(result: Comparison) -> dict[str, Any]:
     return {
         "error": result.error,
         "free_run": result.free_run,
+        "closed_loop": result.closed_loop,
         "noise": result.noise,
         "rows": [vars(row) for row in result.rows],
+        "loop_rows": [vars(row) for row in result.loop_rows],
         "notes": result.notes,
     }
 
@@ -27,6 +29,7 @@ def of_fit(result: Fit) -> dict[str, Any]:
     return {
         "error": result.error,
         "free_run": result.free_run,
+        "closed_loop": result.closed_loop,
         "constants": {words.constant_name(e): e.as_json() for e in result.estimates},
         "notes": result.notes,
         "settings": result.settings.as_json(),
@@ -44,6 +47,7 @@ def of_addition(result: Addition) -> dict[str, Any]:
         "parameters": {e.path.removeprefix(prefix): e.as_json() for e in own},
         "error": result.error,
         "free_run": result.free_run,
+        "closed_loop": result.closed_loop,
         "constants": {words.constant_name(e): e.as_json() for e in others},
         "notes": result.notes,
         "settings": result.settings.as_json(),

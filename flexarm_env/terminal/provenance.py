@@ -19,7 +19,7 @@ def provenance(command: str, arm: str, recordings: Sequence[Recording], seed: in
         "version": flexarm_env.__version__,
         "commit": commit(),
         "arm": arm,
-        "recordings": [{"name": r.name, "sha256": r.sha256} for r in recordings],
+        "files": [{"name": r.name, "sha256": r.sha256} for r in recordings],
     }
     return made if seed is None else made | {"seed": seed}
 

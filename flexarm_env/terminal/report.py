@@ -51,7 +51,7 @@ def report(
 
     report_progress = progress or (lambda done, text: None)
     after, curves, without = None, [], {}
-    if diagnosis is not None:
+    if diagnosis is not None and not diagnosis.recordings:
         report_progress(0.1, "replaying the corrected arm")
         after = flexarm_env.compare(diagnosis.arm, recordings)
         report_progress(0.4, "drawing the effects")

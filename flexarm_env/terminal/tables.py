@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from rich.console import Console, RenderableType
@@ -12,6 +12,7 @@ from rich.text import Text
 
 from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.explain.comparison import Comparison, Row
+from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.results import Addition, Diagnosis, Fit
 from flexarm_env.pictures import words
 from flexarm_env.pictures.highlight import error_by_second
@@ -86,6 +87,8 @@ def comparison(result: Comparison) -> list[RenderableType]:
         table("Error over noise (1 is perfect)", ["signal", "windows of 1 s", "free run", "fit", "noise"], by_signal),
         table("… by regime and frequency band, windows of 1 s", ["part", *heads], by_part),
     ]
+    if result.loop_rows:
+        tables.append(table("In closed loop, by the stated control law", words.LOOP_HEADS, words.loop_rows(result)))
     if len(names) > 1:
         tables.append(_left(table("… by recording", ["recording", *heads, "second by second"], by_recording)))
     elif lines:
@@ -124,15 +127,24 @@ def _notes(notes: Sequence[str]) -> list[RenderableType]:
     return [Text("\n".join(f"- {note}" for note in notes))] if notes else []
 
 
-def steps(steps_: Sequence[tuple[str, float]], free: Sequence[tuple[str, float]]) -> Table:
+def steps(
+    steps_: Sequence[tuple[str, float]], free: Sequence[tuple[str, float]], closed: Sequence[tuple[str, float]] = ()
+) -> Table:
     """Make the table of the error after each step."""
-    runs = dict(free) | ({steps_[-1][0]: free[-1][1]} if steps_ and free else {})  # both end with the final model
+    last = steps_[-1][0] if steps_ else ""
+    whole = [dict(one) | {last: one[-1][1]} for one in (free, closed) if one]  # all end with the final model
     largest = max((value for _, value in steps_), default=0.0) or 1.0  # 0 where nothing moves and nothing is modelled to
     rows = [
-        [name, number(value), number(runs[name]) if name in runs else NOTHING, words.bar(value / largest)]
+        [name, number(value), *(number(one[name]) if name in one else NOTHING for one in whole), words.bar(value / largest)]
         for name, value in steps_
     ]
-    return _left(table("Held-out error over noise (1 is perfect)", ["step", "windows of 1 s", "free run", ""], rows))
+    heads = [head for head, one in (("free run", free), ("closed loop", closed)) if one]
+    return _left(table("Held-out error over noise (1 is perfect)", ["step", "windows of 1 s", *heads, ""], rows))
+
+
+def _closed(errors: Mapping[str, float], effects: Sequence[str] = ()) -> list[tuple[str, float]]:
+    """List the errors in closed loop after each step, none where no loop is known."""
+    return words.steps_of(errors, effects) if errors else []
 
 
 def estimates(title: str, found: Sequence[Estimate]) -> list[RenderableType]:
@@ -151,16 +163,23 @@ def estimates(title: str, found: Sequence[Estimate]) -> list[RenderableType]:
 
 
 def diagnosis(result: Diagnosis) -> list[RenderableType]:
-    """Show the verdict, the ranking, the error and the constants of a diagnosis."""
+    """Show the verdict, the ranking, the error and the constants of a diagnosis, or the faults of its recordings."""
+    if result.recordings:
+        return [Text(words.verdict(result), style="bold"), faults(result.recordings), *_notes(result.notes)]
     free = words.steps_of(result.free_run, result.effects)
     constants = [e for e in result.constants.values() if not e.path.startswith("effects.") or e.nominal]
     return [
         Text(words.verdict(result), style="bold"),
         *_ranking(result),
-        steps(words.steps_of(result.error, result.effects), free),
+        steps(words.steps_of(result.error, result.effects), free, _closed(result.closed_loop, result.effects)),
         *estimates("Constants", constants),
         *_notes([*result.notes, *([f"to settle what is open, {result.next_run.why}"] if result.next_run else [])]),
     ]
+
+
+def faults(found: Sequence[Fault]) -> Table:
+    """Make the table of faults of recordings."""
+    return text_table("Faults of the recordings", words.FAULT_COLUMNS, words.fault_rows(found))
 
 
 def _ranking(result: Diagnosis) -> list[RenderableType]:
@@ -182,7 +201,11 @@ def addition(result: Addition) -> list[RenderableType]:
     """Show the error and the values after an effect was added."""
     return [
         Text(words.addition(result), style="bold"),
-        steps(words.steps_of(result.error, [result.effect]), words.steps_of(result.free_run, [result.effect])),
+        steps(
+            words.steps_of(result.error, [result.effect]),
+            words.steps_of(result.free_run, [result.effect]),
+            _closed(result.closed_loop, [result.effect]),
+        ),
         *estimates("Values", result.estimates),
         *_notes(result.notes),
     ]
@@ -192,7 +215,7 @@ def fit(result: Fit) -> list[RenderableType]:
     """Show the error and the constants after a refit."""
     return [
         Text(f"Refitted, the held-out error goes {words.arrows(result.error)} × the noise.", style="bold"),
-        steps(words.steps_of(result.error), words.steps_of(result.free_run)),
+        steps(words.steps_of(result.error), words.steps_of(result.free_run), _closed(result.closed_loop)),
         *estimates("Constants", result.estimates),
         *_notes(result.notes),
     ]

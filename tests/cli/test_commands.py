@@ -54,7 +54,7 @@ def test_diagnose_writes_what_the_contract_says(flexarm, identify, runs, tmp_pat
     assert found["version"] == flexarm_env.__version__
     assert found["arm"] == "thesis"
     sums = [Recording.read(runs / f"{name}.csv").sha256 for name in ("pulse", "square")]
-    assert [r["sha256"] for r in found["recordings"]] == sums
+    assert [r["sha256"] for r in found["files"]] == sums
     assert Arm.load(tmp_path / "arm.toml").effects["backlash"]["gap"] == 0.0612
     assert sorted(p.name for p in tmp_path.iterdir()) == ["arm.toml", "d.json"]
 

@@ -9,6 +9,7 @@ import warnings
 import gymnasium as gym
 import numpy as np
 import pytest
+from env_steps import TROUBLE, actions, same
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
@@ -22,11 +23,6 @@ from flexarm_env.tasks import COMMON_TERMS
 MODES = [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP]
 #: Weights of the terms that the thesis's tasks have.
 WEIGHTS = {term.name: term.weight for term in COMMON_TERMS}
-TROUBLE = {"tap_rate": 4.0, "dropout_rate": 4.0}
-
-
-def actions(steps: int, arms: int) -> np.ndarray:
-    return np.random.default_rng(3).uniform(-1.0, 1.0, (steps, arms, 1)).astype(np.float32)
 
 
 @pytest.mark.parametrize("id", IDS)
@@ -34,16 +30,6 @@ def test_the_checker_of_gymnasium_is_silent(id: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         check_env(gym.make(id).unwrapped)
-
-
-def same(first: object, second: object) -> bool:
-    """Whether two observations, infos or what they hold are equal bit for bit."""
-    if isinstance(first, dict):
-        return isinstance(second, dict) and first.keys() == second.keys() and all(same(first[k], second[k]) for k in first)
-    one, two = np.asarray(first), np.asarray(second)
-    if one.dtype == object:
-        return all((a is None and b is None) or same(a, b) for a, b in zip(one, two, strict=True))
-    return bool(np.array_equal(one, two))
 
 
 @pytest.mark.parametrize("mode", MODES)

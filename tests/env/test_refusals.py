@@ -42,6 +42,10 @@ from flexarm_env.tasks import Task
         ({"disturb": {"tap_time": 1e308}}, ["tap_time", "1e+308"]),
         ({"physical": "False"}, ["physical", "True or False"]),
         ({"control_rate": True}, ["control_rate", "True"]),
+        ({"duration": "long"}, ["duration", "long"]),
+        ({"duration": 0.0}, ["duration = 0.0"]),
+        ({"arm": "emps"}, ["'emps'", "drive.limit", "with_values", "[A]"]),
+        ({"arm": {"drive": {}}}, ["drive.", "missing"]),
     ],
 )
 def test_bad_arguments_give_one_clear_line(arguments: dict, words: list[str]) -> None:
@@ -86,7 +90,10 @@ def test_bad_tasks_give_one_clear_line(numbers: dict, words: str) -> None:
     assert Task("mine", 5.0, range=float("inf")).range == float("inf")
 
 
-@pytest.mark.parametrize("action", [np.zeros(2), np.zeros((1, 1)), np.array(0.5), np.array([np.nan]), np.array([np.inf]), None])
+@pytest.mark.parametrize(
+    "action",
+    [np.zeros(2), np.zeros((1, 1)), np.array(0.5), np.array([np.nan]), np.array([np.inf]), np.array([1e30]), None],
+)
 def test_bad_actions_are_refused(action: object) -> None:
     env = gym.make("FlexArm/Slew-v0").unwrapped
     env.reset(seed=0)
@@ -94,7 +101,10 @@ def test_bad_actions_are_refused(action: object) -> None:
         env.step(action)
 
 
-@pytest.mark.parametrize("action", [np.zeros(3), np.zeros((3, 2)), np.array([[0.0], [np.nan], [0.0]])])
+@pytest.mark.parametrize(
+    "action",
+    [np.zeros(3), np.zeros((3, 2)), *(np.array([[0.0], [bad], [0.0]]) for bad in (np.nan, -np.inf, 1e30, np.float32(-1e30)))],
+)
 def test_bad_actions_of_many_arms_are_refused(action: np.ndarray) -> None:
     envs = gym.make_vec("FlexArm/Slew-v0", 3, vectorization_mode="vector_entry_point")
     with pytest.raises(gym.error.ResetNeeded):

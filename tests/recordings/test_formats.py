@@ -84,7 +84,8 @@ def test_its_faults_are_those_of_any_other(npz):
     assert "[columns] has 'column' for 'time'; use 'variable'" in refusal(file, columns=LOGGER)
     for bad, words in (
         (np.ones((60, 2)), "'arm_angle' is no vector"),
-        (np.full(60, np.nan), "sample 1, column 'arm_angle': is nan"),
+        (np.full(60, np.nan), "column 'arm_angle': has no reading in any row"),
+        (np.full(60, np.inf), "sample 1, column 'arm_angle': is inf"),
         (np.ones(59), "lengths differ"),
         (np.zeros(0), "without samples"),
         (np.full(60, "x"), "'arm_angle' is no vector"),
@@ -97,15 +98,22 @@ def test_the_lab_and_the_messages_follow(npz, tmp_path):
     arm = Arm.load(npz.parent / "A.toml")
     found = read_upload(arm, "two.npz", (npz / "two.npz").read_bytes(), None, [])
     assert (found.source, len(found)) == ("two.npz", 60)
-    assert catalogue.suffixes() == [".csv", ".dat", ".mat", ".npz", ".txt"]
+    assert catalogue.suffixes() == [".csv", ".dat", ".db3", ".lvm", ".mat", ".mcap", ".npz", ".parquet", ".txt"]
     (tmp_path / "none").mkdir()
-    with pytest.raises(InputError, match=r"a folder without CSV files or other recordings \(\.mat, \.npz\)"):
+    with pytest.raises(InputError, match=r"a folder without CSV files or other recordings \(.*\.mat, .*\.npz, \.parquet\)"):
         Recording.read_all(tmp_path / "none")
 
 
 def test_formats_are_those_of_the_folder():
-    assert [one.name for one in catalogue.formats()] == ["MATLAB file", "text table"]
-    assert catalogue.folder_suffixes() == [".csv", ".mat"]
+    assert [one.name for one in catalogue.formats()] == [
+        "LabVIEW measurement file",
+        "MATLAB file",
+        "MCAP file",
+        "Parquet file",
+        "ROS 2 bag",
+        "text table",
+    ]
+    assert catalogue.folder_suffixes() == [".csv", ".db3", ".lvm", ".mat", ".mcap", ".parquet"]
     assert catalogue.format_of(Path("run.MAT")).name == "MATLAB file"
     assert {catalogue.format_of(Path(name)).name for name in ("a.csv", "a.TXT", "a.xlsx", "a", "a.log")} == {"text table"}
 

@@ -111,10 +111,10 @@ def test_a_row_of_tabs_is_empty_cells_where_tabs_part_them(tmp_path: Path) -> No
         (f"{HEADER}\n" + "1,0.5\n0.1,2,0.6\n0.2,3,0.7\n", "row 2: has 2 cells where 3 are expected; is the row cut off?"),
         (GOOD + "# end of log\n", "row 5: has 1 cells where 3 are expected; a remark stands before the header"),
         (GOOD.replace("0.1,2,0.6\n", "0.1,2,0.60.2"), "row 3: has 5 cells"),
-        (GOOD.replace("0.6", '"2,000"'), "may mark thousands or decimals; write 2000 or"),
-        (GOOD.replace("0.6", '"-1,234,567"'), "write -1234567 or"),
-        (GOOD.replace("0.6", '"0,600"'), "write 0.600"),
-        (GOOD.replace("2,0.6", ",0.6"), "row 3, column 'current': is empty; a number made up would spoil"),
+        (GOOD.replace("0.6", '"2,000"'), "'2,000' has a comma, which may mark thousands or decimals; export"),
+        (GOOD.replace("0.6", '"-1,234,567"'), "'-1,234,567' has a comma, which may"),
+        (GOOD.replace("0.6", '"0,600"'), "'0,600' has a decimal comma; say decimal = ','"),
+        (GOOD.replace("2,0.6", ",0.6"), "row 3, column 'current': is empty; a replay needs time, command and reference"),
     ],
 )
 def test_what_to_do_is_no_advice_that_spoils(tmp_path: Path, text: str, words: str) -> None:

@@ -13,6 +13,7 @@ from flexarm_env.identify.calibrate.parameters import FitParameters
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.error_measure import error_measure
 from flexarm_env.identify.replay.observer import observer_gains
+from flexarm_env.identify.replay.readings import rms_of
 from flexarm_env.identify.replay.replay import replay
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.settings import FAILED_ERROR
@@ -89,7 +90,7 @@ class Objective:
         return self._bounded([(error[~run.train] / sigma).ravel() for run, error, sigma in triples])
 
     def errors_of(self, arm: Arm) -> list[Floats]:
-        """Compute measured less replayed (samples, signals) of the fitted part of each run, SI units."""
+        """Compute measured less replayed (samples, signals) of the fitted part of each run, SI units; 0 where not measured."""
         return self._errors(arm, self.dataset.fitted)
 
     def weighted_by(self, arm: Arm, narrow_priors: bool = True) -> Objective:
@@ -111,7 +112,8 @@ class Objective:
 
     def rms_errors_of(self, arm: Arm) -> Floats:
         """Compute the rms error (runs, signals) of the fitted part, at least the noise."""
-        found = np.array([np.sqrt(np.mean(e**2, axis=0)) for e in self.errors_of(arm)])
+        pairs = zip(self.errors_of(arm), self.dataset.fitted, strict=True)
+        found = np.array([rms_of(errors, run.measured) for errors, run in pairs])
         return np.maximum(np.nan_to_num(found, nan=np.inf, posinf=FAILED_ERROR), self.dataset.noise)
 
     def _bounded(self, parts: Sequence[Floats]) -> Floats:
@@ -120,13 +122,13 @@ class Objective:
 
     def _errors(self, arm: Arm, runs: Sequence[Run]) -> list[Floats]:
         dataset, plants = self.dataset, self.dataset.plants(arm)
-        judges_free_run = error_measure(arm).judges_free_run
+        judges_whole_run = error_measure(arm).judges_whole_run
         errors = []
         for run in runs:
             plant = plants[run.payload]
             gains = self.observers.gains(arm, plant, run, dataset, self.torque_noise) if self.torque_noise > 0.0 else None
-            errors.append(run.measured - replay(plant, run, dataset, gains))
-            if not judges_free_run:
+            errors.append(run.errors(replay(plant, run, dataset, gains)))
+            if not judges_whole_run:
                 errors[-1][: round(dataset.settings.preparation.settling / dataset.interval)] = 0.0
         return errors
 

@@ -93,8 +93,9 @@ def _at_level(objective: Objective, x: Floats, torque_noise: float) -> Objective
 
 def _error(objective: Objective, x: Floats) -> float:
     """Compute the rms error of a whole replay over the noise."""
-    errors = objective.errors_of(objective.parameters.apply(objective.arm, x))
-    return float(np.sqrt(np.mean((np.concatenate(errors) / objective.dataset.noise) ** 2)))
+    dataset = objective.dataset
+    errors = np.concatenate(objective.errors_of(objective.parameters.apply(objective.arm, x)))
+    return float(np.sqrt(np.sum((errors / dataset.noise) ** 2) / dataset.readings(held_out=False)))
 
 
 def _weakest_direction(objective: Objective, x: Floats) -> Floats:

@@ -24,6 +24,8 @@ class Replay:
         free: (samples,) by signal: replayed once from the start.
         windows: (samples,) by signal: replayed in windows of 1 s from estimated states.
         regime: (samples,) 0 stuck, 1 moving slowly, 2 moving fast, from the measured motion.
+        closed: (samples,) by signal, and the command by its kind, "current" or "voltage": replayed in closed loop; empty where
+            the recording's control loop is not known.
     """
 
     name: str
@@ -32,6 +34,7 @@ class Replay:
     free: dict[str, Floats]
     windows: dict[str, Floats]
     regime: NDArray[np.int64]
+    closed: dict[str, Floats] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -58,6 +61,25 @@ class Row:
 
 
 @dataclass(frozen=True)
+class LoopRow:
+    """The errors of one quantity of one recording, replayed in closed loop.
+
+    Attributes:
+        recording: its name.
+        quantity: a signal, or the kind of the command, "current" or "voltage".
+        error: rms error over the noise's standard deviation; NaN for the command.
+        fit: 100 (1 − ‖e‖/‖y − ȳ‖) [%].
+        relative: 100 ‖e‖/‖y‖ [%].
+    """
+
+    recording: str
+    quantity: str
+    error: float
+    fit: float
+    relative: float
+
+
+@dataclass(frozen=True)
 class Comparison(Shown):
     """An arm against recordings: where it fails.
 
@@ -68,7 +90,9 @@ class Comparison(Shown):
         noise: standard deviation of each signal's noise, SI units.
         error: rms over noise of everything, in windows of 1 s.
         free_run: the same, replayed once from the start.
-        notes: findings of the check of the recordings, a line each (gaps, saturation, poor excitation).
+        notes: findings of the check of the recordings, a line each (gaps, saturation, poor excitation, the control law).
+        closed_loop: the same as free_run, in closed loop where the recordings were made in a known one; None where none was.
+        loop_rows: errors in closed loop by recording and quantity.
     """
 
     arm: Arm
@@ -78,3 +102,5 @@ class Comparison(Shown):
     error: float
     free_run: float
     notes: list[str] = field(default_factory=list)
+    closed_loop: float | None = None
+    loop_rows: list[LoopRow] = field(default_factory=list)

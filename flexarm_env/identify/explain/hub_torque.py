@@ -13,6 +13,7 @@ from scipy.linalg import solve_discrete_are
 from flexarm_env.arm import Arm
 from flexarm_env.experiments.payload import with_payload
 from flexarm_env.identify.replay.dataset import Dataset, prepare
+from flexarm_env.identify.replay.readings import errors_of
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.replay.scales import torque_scale
 from flexarm_env.identify.settings import SETTINGS, Explaining, Settings
@@ -161,7 +162,7 @@ class Smoother:
         ahead[0, [linear.states.index(body) for body in ("hub", "motor") if body in linear.states]] = run.start.angle
         ahead[0, : run.start.moving + 1] = run.start.angle
         for k in range(count):
-            filtered[k] = ahead[k] + self.gain @ (readings[k] - self.output @ ahead[k])
+            filtered[k] = ahead[k] + self.gain @ errors_of(readings[k], self.output @ ahead[k])
             if k + 1 < count:
                 ahead[k + 1] = self.transition @ filtered[k] + forcing * command[k]
         for k in range(count - 2, -1, -1):

@@ -22,6 +22,9 @@ KINDS = {
     "restart": "time [s] from which the clock starts again",
 }
 
+#: Samples that JSON names.
+MOST_SAMPLES = 100
+
 
 @dataclass(frozen=True)
 class Fault:
@@ -36,7 +39,7 @@ class Fault:
         unit: SI unit of the value; "" for a ratio or a count.
         message: one line for a person, with the size.
         hint: the line of the column map or of the arm file that mends it; "" where none does.
-        rows: samples that show it, counted from 0, the first ones where there are many; empty where all do.
+        rows: samples that show it, counted from 0; empty where all do.
         share: of the samples that show it.
         other: the other signal of an exchange.
     """
@@ -53,6 +56,12 @@ class Fault:
     share: float = 1.0
     other: str = ""
 
+    @property
+    def line(self) -> str:
+        """One line with the recording, the fault and the line that mends it."""
+        mend = f" ({self.hint})" if self.hint else ""
+        return f"{self.recording}: {self.message}{mend}"
+
     def as_json(self) -> dict[str, Any]:
         """Convert to plain data."""
         found: dict[str, Any] = {
@@ -66,5 +75,5 @@ class Fault:
             "share": self.share,
         }
         if self.rows:
-            found["samples"] = list(self.rows)
+            found["samples"] = list(self.rows[:MOST_SAMPLES])
         return found | ({"other": self.other} if self.other else {})

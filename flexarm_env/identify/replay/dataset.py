@@ -13,7 +13,9 @@ from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 from flexarm_env.experiments.payload import check_payload, plants_by_payload, stated_payload
 from flexarm_env.identify.replay.initial_state import Stretch, find_start
+from flexarm_env.identify.replay.loop import Loop, find_loop
 from flexarm_env.identify.replay.reading_noise import SensorNoise, find_noise, is_open, with_found_noise
+from flexarm_env.identify.replay.readings import measured_time, share_of
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.replay.scales import scales_of
 from flexarm_env.identify.replay.thinning import thin
@@ -56,15 +58,31 @@ class Dataset:
         """Choose the runs to replay: whole ones for the held-out part, which comes last; else the fitted part alone."""
         return self.runs if held_out else self.fitted
 
+    def readings(self, held_out: bool) -> int:
+        """Count the readings of the held-out or the fitted part."""
+        return sum(run.readings(~run.train if held_out else run.train) for run in self.runs)
+
+    @property
+    def has_loop(self) -> bool:
+        """Whether any run is replayed in closed loop."""
+        return any(run.loop is not None for run in self.runs)
+
     def plants(self, arm: Arm) -> dict[float, Plant]:
         """Build an arm's plants by the payload [kg] of the runs, which carry it."""
         return plants_by_payload(arm, (run.payload for run in self.runs), self.interval)
 
-    def set_initial_state(self, plant: Plant, run: Run) -> None:
-        """Fit the initial state to the first samples of a run, and put a plant into it."""
+    def set_initial_state(self, plant: Plant, run: Run, loop: Loop | None = None) -> None:
+        """Fit the initial state to the first samples of a run, and put a plant into it.
+
+        Args:
+            plant: a compiled arm.
+            run: the recording.
+            loop: in which the samples are replayed; under the recorded command without.
+        """
         count = run.start.samples
         stretch = run.command[:count], run.intervals[:count], run.measured[:count]
-        Stretch(run.start, *stretch, self.noise, self.settings.initial_states).set_fitted_state(plant)
+        loop = None if loop is None else loop.first(count)
+        Stretch(run.start, *stretch, self.noise, self.settings.initial_states, loop).set_fitted_state(plant)
 
     def nothing_held_out(self) -> Dataset:
         """Give the same runs with nothing held out."""
@@ -93,9 +111,9 @@ def prepare(
     signals = [s for s in arm.signals if all(s in r.signals for r in recordings)]
     if not signals:
         raise InputError(f"no signal is in all recordings and in arm '{arm.name}', which has {', '.join(arm.signals)}")
+    arm = replace(arm, sensors={s: arm.sensors[s] for s in signals})
     for recording in recordings:
         _check(arm, recording, settings.preparation.fewest_samples)
-    arm = replace(arm, sensors={s: arm.sensors[s] for s in signals})
     noises = find_noise(arm, recordings)
     if is_open(noises, settings.preparation):
         noises = find_noise(arm, recordings, _replayed(arm, _dataset(arm, recordings, noises, settings)))
@@ -111,12 +129,17 @@ def _deviations(noises: Sequence[SensorNoise], settings: Settings) -> Floats:
 
 
 def _dataset(arm: Arm, recordings: Sequence[Recording], noises: Sequence[SensorNoise], settings: Settings) -> Dataset:
-    signals = list(arm.signals)
     interval = float(np.median([r.sample_time for r in recordings]))
-    measured = [np.stack([r.signals[s] for s in signals], axis=1) for r in recordings]
     noise = _deviations(noises, settings)
-    runs = tuple(_run(r, m, signals, noise, interval, settings) for r, m in zip(recordings, measured, strict=True))
-    return Dataset(runs, tuple(signals), interval, noise, scales_of(arm, runs, signals, settings.reference), settings)
+    runs = tuple(_run(arm, recording, noise, interval, settings) for recording in recordings)
+    return Dataset(
+        runs, tuple(arm.signals), interval, noise, scales_of(arm, runs, list(arm.signals), settings.reference), settings
+    )
+
+
+def _readings(arm: Arm, recording: Recording) -> Floats:
+    """Stack the readings (samples, signals) of an arm's sensors, SI units."""
+    return np.stack([recording.signals[signal] for signal in arm.signals], axis=1)
 
 
 def _replayed(arm: Arm, dataset: Dataset) -> list[Floats]:
@@ -133,23 +156,30 @@ def _check(arm: Arm, recording: Recording, fewest: int) -> None:
         other = next(kind for kind in INPUTS if kind != arm.input)
         raise InputError(f"{recording.name} holds {other}, but arm '{arm.name}' is driven by {arm.input}")
     check_payload(arm, recording)
-    if len(recording) < fewest:
-        raise InputError(f"{recording.name} has {len(recording)} samples; at least {fewest} are needed")
+    count = int(np.count_nonzero(share_of(_readings(arm, recording))))
+    if count < fewest:
+        with_readings = f" with a reading of {' or '.join(arm.signals)}" if count < len(recording) else ""
+        raise InputError(f"{recording.name} has {count} samples{with_readings}; at least {fewest} are needed")
 
 
-def _run(recording: Recording, measured: Floats, signals: list[str], noise: Floats, interval: float, settings: Settings) -> Run:
+def _run(arm: Arm, recording: Recording, noise: Floats, interval: float, settings: Settings) -> Run:
     numbers = settings.preparation
+    signals, measured = list(arm.signals), _readings(arm, recording)
     time = recording.time - recording.time[0]
-    steps = np.diff(time)
+    steps, shown = np.diff(time), measured_time(time, measured)
     # Wider than in a simulation, where only rounding counts as even: tables for one interval make replays fast.
     uneven = np.abs(steps - interval).max() > numbers.uneven * interval
+    start = find_start(time, measured, signals, noise, settings.initial_states)
+    loop, note = find_loop(arm, recording, signals, start.speed, numbers)
     return Run(
         name=recording.name,
         time=time,
         command=np.ascontiguousarray(recording.command),
         measured=np.ascontiguousarray(measured),
         intervals=np.append(steps, interval) if uneven else NO_INTERVALS,
-        train=time < (1.0 - numbers.held_out_share) * time[-1],
-        start=find_start(time, measured, signals, noise, settings.initial_states),
+        train=shown < (1.0 - numbers.held_out_share) * shown[-1],
+        start=start,
         payload=stated_payload(recording),
+        loop=loop,
+        loop_note=note,
     )

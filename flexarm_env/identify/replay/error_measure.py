@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from flexarm_env.arm import Arm
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.observer import innovation_sigma, observer_gains
-from flexarm_env.identify.replay.replay import replay, window_observers, window_replay
-from flexarm_env.identify.replay.run import Run
-from flexarm_env.identify.settings import FAILED_ERROR, LEAST_EXCESS
+from flexarm_env.identify.replay.readings import bounded
+from flexarm_env.identify.replay.replay import replay, whole_replay, window_observers, window_replay
+from flexarm_env.identify.settings import LEAST_EXCESS
 from flexarm_env.plant.plant import Plant
 
 Floats = NDArray[np.float64]
@@ -33,11 +33,18 @@ class Score:
     Attributes:
         windows: in windows of 1 s from estimated states; where torque noise is stated, the rms of the innovations over their
             standard deviation under both noises, since such a disturbance drives any free replay away within a window.
-        free_run: each recording replayed once from its start.
+        free_run: each recording replayed once from its start under the recorded command.
+        closed_loop: the same under the control law, where recordings were made in a known loop; None where there is none.
     """
 
     windows: float
     free_run: float
+    closed_loop: float | None = None
+
+    @property
+    def whole_run(self) -> float:
+        """Error of whole recordings: in closed loop where it is known, since an axis that nothing holds drifts in a free run."""
+        return self.free_run if self.closed_loop is None else self.closed_loop
 
     @property
     def excess(self) -> float:
@@ -45,26 +52,26 @@ class Score:
         return excess(self.windows)
 
     @property
-    def free_run_excess(self) -> float:
-        """Excess of the error of the free run, as a variance."""
-        return excess(self.free_run)
+    def whole_run_excess(self) -> float:
+        """Excess of the error of whole recordings, as a variance."""
+        return excess(self.whole_run)
 
     @property
     def mean_excess(self) -> float:
         """Geometric mean of both."""
-        return math.sqrt(self.excess * self.free_run_excess)
+        return math.sqrt(self.excess * self.whole_run_excess)
 
     def is_better_than(self, other: Score) -> bool:
         """Whether the product of both errors is smaller."""
-        return self.windows * self.free_run < other.windows * other.free_run
+        return self.windows * self.whole_run < other.windows * other.whole_run
 
 
 class ErrorMeasure(Protocol):
     """How errors are measured."""
 
     @property
-    def judges_free_run(self) -> bool:
-        """Whether the free run says anything about the model."""
+    def judges_whole_run(self) -> bool:
+        """Whether a replay of whole recordings says anything about the model."""
 
     def score(self, arm: Arm, dataset: Dataset, held_out: bool) -> Score:
         """Measure the errors of an arm on the held-out or the fitted part."""
@@ -72,47 +79,55 @@ class ErrorMeasure(Protocol):
     def brief(self, arm: Arm, dataset: Dataset) -> float:
         """Measure the held-out error in windows, cheaply, for arms that are nearly the same."""
 
+    def brief_readings(self, arm: Arm, dataset: Dataset) -> list[Floats]:
+        """Compute the held-out readings (rows, signals) of each run that the brief error judges, over their deviation."""
+
 
 @dataclass(frozen=True)
 class WindowErrors:
     """Errors in windows of 1 s from estimated states, and of one free run."""
 
-    judges_free_run: bool = True
+    judges_whole_run: bool = True
 
     def score(self, arm: Arm, dataset: Dataset, held_out: bool) -> Score:
         """Measure the errors of an arm on the held-out or the fitted part."""
         plants = dataset.plants(arm)
         observers = {payload: window_observers(arm, plant, dataset) for payload, plant in plants.items()}
         totals = np.zeros(2)
-        count = 0
         for run in dataset.runs_to_replay(held_out):
             rows = ~run.train if held_out else run.train
             plant, first = plants[run.payload], int(np.argmax(rows))
             windows = window_replay(plant, run, dataset, observers[run.payload], first)
-            totals += [_squares(run, replayed, rows, dataset) for replayed in (windows, replay(plant, run, dataset))]
-            count += int(rows.sum()) * len(dataset.signals)
-        windows, free = np.sqrt(totals / count)
-        return Score(float(windows), float(free))
+            totals += [_squares(run.errors(y, dataset.noise)[rows]) for y in (windows, replay(plant, run, dataset))]
+        windows, free = np.sqrt(totals / dataset.readings(held_out))
+        return Score(float(windows), float(free), _closed_loop_error(plants, dataset, held_out))
 
     def brief(self, arm: Arm, dataset: Dataset) -> float:
         """Measure the held-out error in windows, from states that two corrected replays estimate."""
+        total = 0.0
+        for run, windows in zip(dataset.runs, self._brief_windows(arm, dataset), strict=True):
+            total += _squares(run.errors(windows, dataset.noise)[~run.train])
+        return float(np.sqrt(total / dataset.readings(held_out=True)))
+
+    def brief_readings(self, arm: Arm, dataset: Dataset) -> list[Floats]:
+        """Compute the held-out readings (rows, signals) of each run in windows, over the noise."""
+        windows = self._brief_windows(arm, dataset)
+        return [one[~run.train] / dataset.noise for run, one in zip(dataset.runs, windows, strict=True)]
+
+    def _brief_windows(self, arm: Arm, dataset: Dataset) -> Iterator[Floats]:
+        """Replay the held-out part of each run in windows; rows before it are left empty."""
         plants = dataset.plants(arm)
         levels = dataset.settings.process_noise.windows_brief
         observers = {payload: window_observers(arm, plant, dataset, levels)[1:] for payload, plant in plants.items()}
-        total, count = 0.0, 0
         for run in dataset.runs:
-            rows = ~run.train
-            windows = window_replay(plants[run.payload], run, dataset, observers[run.payload], int(np.argmax(rows)))
-            total += _squares(run, windows, rows, dataset)
-            count += int(rows.sum()) * len(dataset.signals)
-        return float(np.sqrt(total / count))
+            yield window_replay(plants[run.payload], run, dataset, observers[run.payload], int(np.argmax(~run.train)))
 
 
 @dataclass(frozen=True)
 class InnovationErrors:
     """Innovations of the observer that the stated torque noise gives."""
 
-    judges_free_run: bool = False
+    judges_whole_run: bool = False
 
     def score(self, arm: Arm, dataset: Dataset, held_out: bool) -> Score:
         """Measure the errors of an arm on the held-out or the fitted part."""
@@ -121,20 +136,26 @@ class InnovationErrors:
         gains = {payload: observer_gains(arm, plant, dataset, own) for payload, plant in plants.items()}
         sigmas = {payload: innovation_sigma(plant, dataset, own) for payload, plant in plants.items()}
         totals = np.zeros(2)
-        count = 0
         for run in dataset.runs:
             rows = ~run.train if held_out else run.train
             plant = plants[run.payload]
-            corrected = (run.measured - replay(plant, run, dataset, gains[run.payload])) / sigmas[run.payload]
-            free = (run.measured - replay(plant, run, dataset)) / dataset.noise
-            totals += [np.sum(np.nan_to_num(part[rows], nan=FAILED_ERROR) ** 2) for part in (corrected, free)]
-            count += int(rows.sum()) * len(dataset.signals)
-        innovations, free_run = np.sqrt(totals / count)
-        return Score(float(innovations), float(free_run))
+            corrected = run.errors(replay(plant, run, dataset, gains[run.payload]), sigmas[run.payload])
+            free = run.errors(replay(plant, run, dataset), dataset.noise)
+            totals += [_squares(errors[rows]) for errors in (corrected, free)]
+        innovations, free_run = np.sqrt(totals / dataset.readings(held_out))
+        return Score(float(innovations), float(free_run), _closed_loop_error(plants, dataset, held_out))
 
     def brief(self, arm: Arm, dataset: Dataset) -> float:
         """Measure the held-out innovations."""
         return self.score(arm, dataset, held_out=True).windows
+
+    def brief_readings(self, arm: Arm, dataset: Dataset) -> list[Floats]:
+        """Compute the predictions (rows, signals) of each run's held-out part, over the deviation of the innovations."""
+        plants, own = dataset.plants(arm), arm.constants["drive"]["torque_noise"]
+        gains = {payload: observer_gains(arm, plant, dataset, own) for payload, plant in plants.items()}
+        sigmas = {payload: innovation_sigma(plant, dataset, own) for payload, plant in plants.items()}
+        predicted = [(run, replay(plants[run.payload], run, dataset, gains[run.payload])) for run in dataset.runs]
+        return [one[~run.train] / sigmas[run.payload] for run, one in predicted]
 
 
 def error_measure(arm: Arm) -> ErrorMeasure:
@@ -147,17 +168,31 @@ def score(arm: Arm, dataset: Dataset, held_out: bool = True) -> Score:
     return error_measure(arm).score(arm, dataset, held_out)
 
 
+def closed_loop_errors(scores: Mapping[str, Score]) -> dict[str, float]:
+    """Select the errors in closed loop; none where no loop is known."""
+    return {name: score.closed_loop for name, score in scores.items() if score.closed_loop is not None}
+
+
 def window_errors(arm: Arm, plants: Mapping[float, Plant], dataset: Dataset) -> list[Floats]:
-    """Compute the errors over noise (samples, signals) of each whole run in windows."""
+    """Compute the errors over noise (samples, signals) of each whole run in windows; 0 where nothing was measured."""
     observers = {payload: window_observers(arm, plant, dataset) for payload, plant in plants.items()}
     errors = []
     for run in dataset.runs:
         replayed = window_replay(plants[run.payload], run, dataset, observers[run.payload])
-        scaled = (run.measured - replayed) / dataset.noise
-        errors.append(np.nan_to_num(scaled, nan=FAILED_ERROR))
+        errors.append(bounded(run.errors(replayed, dataset.noise)))
     return errors
 
 
-def _squares(run: Run, replayed: Floats, rows: NDArray[np.bool_], dataset: Dataset) -> float:
-    scaled = (run.measured[rows] - replayed[rows]) / dataset.noise
-    return float(np.sum(np.nan_to_num(scaled, nan=FAILED_ERROR) ** 2))
+def _closed_loop_error(plants: Mapping[float, Plant], dataset: Dataset, held_out: bool) -> float | None:
+    """Measure the error of whole recordings in closed loop; recordings without a loop count in a free run."""
+    if not dataset.has_loop:
+        return None
+    total = 0.0
+    for run in dataset.runs_to_replay(held_out):
+        rows = ~run.train if held_out else run.train
+        total += _squares(run.errors(whole_replay(plants[run.payload], run, dataset), dataset.noise)[rows])
+    return float(np.sqrt(total / dataset.readings(held_out)))
+
+
+def _squares(errors: Floats) -> float:
+    return float(np.sum(bounded(errors) ** 2))

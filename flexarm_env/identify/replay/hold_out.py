@@ -9,6 +9,7 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.error_measure import error_measure, score, window_errors
+from flexarm_env.identify.replay.readings import share_of
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.settings import Settings
 
@@ -26,7 +27,7 @@ def hold_out_late(calibrated: Arm, dataset: Dataset) -> Dataset:
     Returns:
         The same dataset object where nothing changes.
     """
-    if not error_measure(calibrated).judges_free_run:
+    if not error_measure(calibrated).judges_whole_run:
         return dataset
     held, fitted = score(calibrated, dataset), score(calibrated, dataset, held_out=False)
     settings = dataset.settings
@@ -36,7 +37,8 @@ def hold_out_late(calibrated: Arm, dataset: Dataset) -> Dataset:
         return dataset
     runs = []
     for run, errors in zip(dataset.runs, window_errors(calibrated, dataset.plants(calibrated), dataset), strict=True):
-        runs.append(_show(run, _share_shown(np.mean(errors**2, axis=1) - 1.0, settings), settings))
+        shares = share_of(run.measured)
+        runs.append(_show(run, _share_shown(np.mean(errors**2, axis=1) - shares, shares, settings), settings))
     unchanged = all(new.train.sum() == run.train.sum() for new, run in zip(runs, dataset.runs, strict=True))
     return dataset if unchanged else replace(dataset, runs=tuple(runs))
 
@@ -44,7 +46,7 @@ def hold_out_late(calibrated: Arm, dataset: Dataset) -> Dataset:
 def hold_out_notes(dataset: Dataset) -> list[str]:
     """Describe the recordings of which less is held out than usual, a line each."""
     usual = dataset.settings.preparation.held_out_share
-    shown = [(run.name, float(run.time[run.train][-1] / run.time[-1])) for run in dataset.runs]
+    shown = [(run.name, float(time[run.train][-1] / time[-1])) for run in dataset.runs for time in [run.measured_time]]
     return [
         f"{name}: fits see the first {100 * share:.0f} %, not {100 * (1 - usual):.0f} %, since what the model lacks shows late"
         for name, share in shown
@@ -52,10 +54,16 @@ def hold_out_notes(dataset: Dataset) -> list[str]:
     ]
 
 
-def _share_shown(excesses: np.ndarray, settings: Settings) -> float:
-    """Compute the share of a recording (samples,) in which it shows enough of its excess error."""
+def _share_shown(excesses: np.ndarray, shares: np.ndarray, settings: Settings) -> float:
+    """Compute the share of a recording in which it shows enough of its excess error.
+
+    Args:
+        excesses: (samples,) error in excess of the noise, as a variance.
+        shares: (samples,) of the signals that were measured.
+        settings: thresholds.
+    """
     total = np.cumsum(excesses)
-    if total[-1] < (settings.errors.explained**2 - 1.0) * len(total):
+    if total[-1] < (settings.errors.explained**2 - 1.0) * np.sum(shares):
         return 0.0
     return float(np.argmax(total >= (1.0 - settings.preparation.held_out_share) * total[-1]) + 1) / len(total)
 
@@ -63,4 +71,5 @@ def _share_shown(excesses: np.ndarray, settings: Settings) -> float:
 def _show(run: Run, share: float, settings: Settings) -> Run:
     latest = 1.0 - settings.preparation.late_least_held_out
     seen = np.arange(len(run.time)) < min(share, latest) * len(run.time)
-    return replace(run, train=run.train | (seen & (run.time < latest * run.time[-1])))
+    time = run.measured_time
+    return replace(run, train=run.train | (seen & (time < latest * time[-1])))

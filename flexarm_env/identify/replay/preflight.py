@@ -18,6 +18,8 @@ def preflight(dataset: Dataset) -> tuple[list[str], bool]:
     for run in dataset.runs:
         if run.payload:
             notes.append(f"{run.name}: the arm carries the {run.payload:g} kg that the recording states as its payload")
+        if run.loop_note:
+            notes.append(f"{run.name}: {run.loop_note}")
         if len(run.intervals):
             notes.append(f"{run.name}: sampled unevenly, {run.intervals.min():.4g} to {run.intervals.max():.4g} s")
         at_limit = np.abs(run.command) >= numbers.at_limit * np.abs(run.command).max()
@@ -27,7 +29,7 @@ def preflight(dataset: Dataset) -> tuple[list[str], bool]:
     length = sum(run.time[-1] for run in dataset.runs)
     turns = np.array([signal == "motor_speed" for signal in dataset.signals])  # steadily, too
     motion = max(
-        float((np.where(turns, np.abs(run.measured).max(axis=0), np.ptp(run.measured, axis=0)) / dataset.noise).max())
+        float((np.where(turns, np.fmax.reduce(np.abs(run.measured), axis=0), run.extent) / dataset.noise).max())
         for run in dataset.runs
     )
     if length < numbers.shortest:

@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
+from flexarm_env.identify.replay.closed_loop import LoopReplay, play_loop
 from flexarm_env.identify.replay.dataset import Dataset
+from flexarm_env.identify.replay.loop import Loop
 from flexarm_env.identify.replay.observer import modal_gains, observer_gains
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.replay.scales import torque_scale
@@ -33,6 +35,24 @@ def replay(plant: Plant, run: Run, dataset: Dataset, gains: Floats | None = None
     if gains is None:
         return plant.replay(run.command, run.intervals, NO_GAINS, NOT_MEASURED)
     return plant.replay(run.command, run.intervals, modal_gains(plant, gains), run.measured)
+
+
+def loop_replay(plant: Plant, run: Run, loop: Loop, dataset: Dataset) -> LoopReplay:
+    """Replay a run from its initial state in closed loop.
+
+    Args:
+        plant: a compiled arm.
+        run: the recording.
+        loop: its control law and reference.
+        dataset: to which the run belongs.
+    """
+    dataset.set_initial_state(plant, run, loop)
+    return play_loop(plant, loop, run.intervals)
+
+
+def whole_replay(plant: Plant, run: Run, dataset: Dataset) -> Floats:
+    """Replay a run once from its start, in closed loop where that is known: readings (samples, signals), SI units."""
+    return replay(plant, run, dataset) if run.loop is None else loop_replay(plant, run, run.loop, dataset).readings
 
 
 def window_replay(plant: Plant, run: Run, dataset: Dataset, observers: Sequence[Floats], first: int = 0) -> Floats:
@@ -66,7 +86,7 @@ def window_replay(plant: Plant, run: Run, dataset: Dataset, observers: Sequence[
             if start + length > first or not len(gains):
                 free = plant.play(command[part], intervals, NO_GAINS, NOT_MEASURED)[:length]
                 inside = slice(start, start + len(free))
-                error = float(np.sum(((run.measured[inside] - free) / dataset.noise) ** 2))
+                error = float(np.sum(run.errors(free, dataset.noise, inside) ** 2))
                 if error < best[w] or not np.isfinite(best[w]):
                     out[inside], best[w] = free, error if np.isfinite(error) else np.inf
             if len(gains):

@@ -28,7 +28,7 @@ def _slowing_torque(arm: Arm, runs: Sequence[Run]) -> float:
     if "motor_speed" not in arm.signals:
         return 0.0
     tach, ratio = arm.signals.index("motor_speed"), arm.constants["drive"]["gear_ratio"]
-    return float(_inertia(arm) / ratio * max(np.ptp(run.measured[:, tach]) / run.time[-1] for run in runs))
+    return float(_inertia(arm) / ratio * max(run.extent[tach] / run.time[-1] for run in runs))
 
 
 def _inertia(arm: Arm) -> float:
@@ -44,8 +44,8 @@ def scales_of(arm: Arm, runs: Sequence[Run], signals: Sequence[str], reference: 
     angle = speed = 1.0
     if "arm_angle" in signals:
         column = signals.index("arm_angle")
-        angle = max(float(np.ptp(run.measured[:, column])) for run in runs) / reference.angle
-        rates = [np.ptp(run.measured[:, column]) / np.sqrt(run.time[-1]) for run in runs]
+        angle = max(float(run.extent[column]) for run in runs) / reference.angle
+        rates = [run.extent[column] / np.sqrt(run.time[-1]) for run in runs]
         speed = max(float(max(rates)), reference.least_speed) / reference.speed
     angle = max(angle, reference.least_ratio)
     length, inertia = arm.structure().length or 1.0, _inertia(arm) / reference.inertia
@@ -69,6 +69,6 @@ def _signal_scales(runs: Sequence[Run], signals: Sequence[str]) -> dict[str, flo
     for i, signal in enumerate(signals):
         sensor = known_sensors()[signal]
         if sensor.usual_range is not None:
-            size = max(float(np.ptp(run.measured[:, i])) for run in runs) / sensor.usual_range
+            size = max(float(run.extent[i]) for run in runs) / sensor.usual_range
             sizes[sensor.unit] = max(sizes.get(sensor.unit, 0.0), size)
     return {name: size or 1.0 for unit, size in sizes.items() for name in (unit, f"{unit}/s")}

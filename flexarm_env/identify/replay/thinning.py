@@ -74,7 +74,7 @@ def _count(arm: Arm, recordings: Sequence[Recording], noise: Floats, settings: S
         return 1
     longest = min(
         numbers.longest_step,
-        numbers.share_of_lag * _shortest_lag(arm),
+        numbers.share_of_lag * _shortest_lag(arm, recordings),
         numbers.share_of_period / _slow_vibration(arm, interval, numbers.slowest),
     )
     count = min(int(longest / interval * (1.0 + settings.preparation.uneven)), shortest // numbers.fewest_samples)
@@ -85,10 +85,14 @@ def _count(arm: Arm, recordings: Sequence[Recording], noise: Floats, settings: S
     return max(count, 1)
 
 
-def _shortest_lag(arm: Arm) -> float:
-    """Find the shortest time constant of the arm's sensors and drive [s]; infinite without any."""
+def _shortest_lag(arm: Arm, recordings: Sequence[Recording]) -> float:
+    """Find the shortest time constant of sensors and drive, or period of a replayed control law [s]; infinite without any."""
     structure = arm.structure()
     lags = [structure.current_lag, *(float(channel.filter) for channel in structure.sensors.values())]
+    for recording in recordings:
+        law = recording.controller or arm.controller
+        if law is not None and recording.reference is not None:
+            lags.append(1.0 / law.rate if law.rate > 0.0 else recording.sample_time)
     return min((lag for lag in lags if lag > 0.0), default=float("inf"))
 
 

@@ -45,11 +45,9 @@ class Model:
     def bic(self, dataset: Dataset) -> float:
         """Compute the Bayesian information criterion on all of the data (Schwarz, Ann. Stat. 6 (1978) 461).
 
-        The held-out part alone shows whether an effect is missing. More samples decide better between two rivals near the noise.
+        The held-out part alone shows whether an effect is missing. More readings decide better between two rivals near the noise.
         """
-        signals = len(dataset.signals)
-        fitted = sum(int(run.train.sum()) for run in dataset.runs) * signals
-        held = sum(len(run.train) for run in dataset.runs) * signals - fitted
+        fitted, held = dataset.readings(held_out=False), dataset.readings(held_out=True)
         errors = fitted * self.fitted_score.windows**2 + held * self.score.windows**2
         return errors + len(self.calibration.parameters) * math.log(fitted + held)
 

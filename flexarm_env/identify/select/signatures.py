@@ -91,20 +91,24 @@ def baseline(found: Calibration, dataset: Dataset, levels: Sequence[float] | Non
         visible = np.sqrt(np.mean((objective.weights.sigma / dataset.noise) ** 2)) > settings.screening.visible
         if torque_noise == own or visible:
             break
-    return _baseline(objective, found)
+    return baseline_of(objective, found.solution.steps.now)
 
 
 def baselines(starts: Sequence[Calibration], dataset: Dataset) -> list[Baseline]:
     """Build baselines that weigh errors alike, so that candidates from one can be compared with candidates from another."""
     first = baseline(starts[0], dataset)
     alike = [replace(first.objective, arm=start.arm, observers=ObserverBank()) for start in starts[1:]]
-    return [first, *(_baseline(objective, start) for objective, start in zip(alike, starts[1:], strict=True))]
+    return [
+        first,
+        *(baseline_of(objective, start.solution.steps.now) for objective, start in zip(alike, starts[1:], strict=True)),
+    ]
 
 
-def _baseline(objective: Objective, found: Calibration) -> Baseline:
-    x = objective.parameters.position(found.arm)
+def baseline_of(objective: Objective, steps: Floats) -> Baseline:
+    """Build the baseline of an objective's own arm, with differences over steps (x,)."""
+    x = objective.parameters.position(objective.arm)
     residual = objective.residual(x)
-    slopes = jacobian(objective.residual, x, found.solution.steps.now)
+    slopes = jacobian(objective.residual, x, steps)
     prior = np.diag(1.0 / objective.weights.prior)
     orthonormal = np.linalg.qr(np.vstack([slopes, prior]))[0][: len(residual)]
     return Baseline(objective, x, residual, slopes, orthonormal)

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from flexarm_env.errors import InputError
 from flexarm_env.recordings.checks import as_vector
-from flexarm_env.recordings.columns import ColumnMap
+from flexarm_env.recordings.columns import ColumnMap, Source, base_value
+from flexarm_env.recordings.messages import quoted
 from flexarm_env.recordings.table import Table
 
 
@@ -21,7 +24,7 @@ class Format:
         keys: by which entries of a `[columns]` table a column is found in it: "column", "index", "variable".
         read: makes a table of a file's content and its column map (None if there is none). Every fault is an InputError,
             without the file's name.
-        needs_map: whether only a column map says which column is which.
+        needs_map: whether only a column map says which column is which; otherwise a file may have FlexArm's own header.
         also: suffixes that such a file may have, too, but that files in a folder may have for other reasons.
     """
 
@@ -42,14 +45,55 @@ class Format:
         Raises:
             InputError: for a column map that is missing or of another format, and for content that the format cannot read.
         """
-        use = " or ".join(f"'{key}'" for key in self.keys)
-        if columns is None and self.needs_map:
-            raise InputError(f"a {self.name} needs a [columns] table that names its columns by {use}")
-        for name, source in columns.sources.items() if columns else ():
-            if source.key not in self.keys:
-                raise InputError(f"is a {self.name}, but [columns] has '{source.key}' for '{name}'; use {use}")
-        table = self.read(content, columns)
+        self._check_map(columns)
+        rate = columns.sources.get("time") if columns else None
+        if columns is None:
+            table = self.read(content, columns)
+        elif rate is None or rate.key != "rate":
+            table = self._with_conditions(content, columns)
+        else:
+            others = {name: source for name, source in columns.sources.items() if name != "time"}
+            table = _evenly_timed(self._with_conditions(content, replace(columns, sources=others)), rate)
         values = {name: as_vector(name, numbers) for name, numbers in table.values.items()}
         if not all(map(len, values.values())):
             raise InputError("has a column without samples; it needs at least two in each")
         return replace(table, values=values)
+
+    def _check_map(self, columns: ColumnMap | None) -> None:
+        """Refuse a column map that is missing or of another format."""
+        use = " or ".join(f"'{key}'" for key in self.keys)
+        if columns is None and self.needs_map:
+            raise InputError(f"a {self.name} needs a [columns] table that names its columns by {use}")
+        allowed = {*self.keys, "rate"} if self.needs_map else {*self.keys, "rate", "header"}
+        for name, source in (columns.sources | columns.conditions).items() if columns else ():
+            if source.key == "header" and self.needs_map:
+                raise InputError(f"is a {self.name}, but [columns] has no place for '{name}'; add {use}")
+            if source.key not in allowed:
+                raise InputError(f"is a {self.name}, but [columns] has '{source.key}' for '{name}'; use {use}")
+
+    def _with_conditions(self, content: bytes, columns: ColumnMap) -> Table:
+        """Read the columns of conditions beside the others; each must hold one number throughout."""
+        table = self.read(content, replace(columns, sources=columns.sources | columns.conditions))
+        conditions = dict(table.conditions)
+        for name, source in columns.conditions.items():
+            numbers = as_vector(name, table.values[name])
+            numbers = numbers[~np.isnan(numbers)]  # rows of other topics
+            if not len(numbers) or (numbers != numbers[0]).any():
+                place = quoted(str(source.place))
+                raise InputError(
+                    f"condition '{name}': {place} is not one number throughout; cut the file in two where it changes"
+                )
+            if name in conditions:
+                raise InputError(f"condition '{name}' comes twice, in [columns] and in the file's remarks; keep one of the two")
+            conditions[name] = base_value(float(numbers[0]), source)
+        values = {name: numbers for name, numbers in table.values.items() if name not in columns.conditions}
+        return replace(table, values=values, conditions=conditions)
+
+
+def _evenly_timed(table: Table, rate: Source) -> Table:
+    """Add the times of an even rate to a table without times."""
+    if "time" in table.values:
+        raise InputError("has a column of time, but [columns] gives a rate; leave the rate out")
+    count = max(map(len, table.values.values()), default=0)
+    time = {"time": np.arange(count) / float(rate.place)}
+    return replace(table, values=time | table.values, sources={"time": rate} | table.sources)

@@ -15,8 +15,8 @@ def formats() -> tuple[Format, ...]:
     """List the formats, by the names of their modules."""
     package = importlib.import_module("flexarm_env.recordings.formats")
     names = (module.name for module in pkgutil.iter_modules(package.__path__))
-    modules = [importlib.import_module(f"{package.__name__}.{name}") for name in names if name not in ("base", "catalogue")]
-    return tuple(module.FORMAT for module in modules)
+    modules = [importlib.import_module(f"{package.__name__}.{name}") for name in names if name != "catalogue"]
+    return tuple(module.FORMAT for module in modules if hasattr(module, "FORMAT"))
 
 
 def format_of(path: Path) -> Format:

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
+from dataclasses import replace
 
-from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.errors import InputError
 from flexarm_env.recordings.cells import count_cells, cut, is_blank, is_number, read_numbers, usual_width
-from flexarm_env.recordings.columns import ColumnMap, Source, check_names, native_sources
+from flexarm_env.recordings.columns import ColumnMap
 from flexarm_env.recordings.conditions import add_condition
 from flexarm_env.recordings.formats.base import Format
+from flexarm_env.recordings.headers import header_sources
 from flexarm_env.recordings.messages import quoted
 from flexarm_env.recordings.table import MOST_LINES, Table
+
+#: The first line that tells Excel the delimiter.
+_EXCEL = re.compile(r"sep=(.)[;,\t]*+")
 
 
 def read(content: bytes, columns: ColumnMap | None) -> Table:
@@ -23,28 +29,39 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
     Raises:
         InputError: naming row (line of the file, counted from 1) and column.
     """
-    count = max(content.count(b"\n"), content.count(b"\r"))
-    if count > MOST_LINES:
-        raise InputError(f"has {count} lines, the limit is {MOST_LINES}; cut it into shorter recordings")
-    layout = columns or ColumnMap()
-    lines = _decode(content).replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    first, conditions = _preamble(lines, layout.skip_rows)
+    lines = text_lines(content)
+    layout, skip = _excel(lines, columns or ColumnMap())
+    first, conditions = _preamble(lines, skip)
     header, body = _header(lines, first, layout)
-    sources = native_sources(header) if columns is None else _places(header, layout)
-    check_names(tuple(sources))
-    numbers = [row for row in range(body, len(lines)) if not is_blank(lines[row], layout.delimiter)]
-    if not numbers:
+    rows = [row for row in range(body, len(lines)) if not is_blank(lines[row], layout.delimiter)]
+    return replace(read_rows([lines[row] for row in rows], rows, header, body, layout), conditions=conditions)
+
+
+def read_rows(rows: list[str], places: Sequence[int], header: list[str], body: int, layout: ColumnMap) -> Table:
+    """Read the numbers of rows of text.
+
+    Args:
+        rows: the text of each sample.
+        places: the index of each in the file.
+        header: its cells; [] where there is none.
+        body: the index of the line after the header.
+        layout: the file's column map; without sources for FlexArm's own header.
+
+    Raises:
+        InputError: naming row (line of the file, counted from 1) and column.
+    """
+    sources = header_sources(header, layout, f"row {body}")
+    if not rows:
         raise InputError(f"has no samples after row {body}; it needs at least two rows of numbers")
     labels = {int(source.place): name for name, source in sources.items()}
-    rows = [lines[row] for row in numbers]
     counts = [count_cells(row, layout.delimiter) for row in rows]
-    width = len(header) if columns is None else usual_width(counts)
+    width = len(header) if layout.refines else usual_width(counts)
     if any(source.key == "column" for source in layout.sources.values()):
         _check_header(header, body, labels, width, layout.delimiter)
     even = counts.count(width) == len(rows)
-    table = read_numbers(rows, numbers, labels, width, even, layout)
+    table = read_numbers(rows, places, labels, width, even, layout)
     values = {name: table[:, i] for i, name in enumerate(labels.values())}
-    return Table(values, sources, conditions, [row + 1 for row in numbers])
+    return Table(values, sources, lines=[row + 1 for row in places])
 
 
 def read_header(head: bytes) -> list[str]:
@@ -55,8 +72,21 @@ def read_header(head: bytes) -> list[str]:
     """
     whole, _, _ = head.replace(b"\r", b"\n").rpartition(b"\n")  # the last line may be cut off, within a character, too
     lines = _decode(whole or head).split("\n")
-    first, _ = _preamble(lines, 0)
-    return _header(lines, first, ColumnMap())[0]
+    layout, skip = _excel(lines, ColumnMap())
+    first, _ = _preamble(lines, skip)
+    return _header(lines, first, layout)[0]
+
+
+def text_lines(content: bytes) -> list[str]:
+    """Cut a file's content into lines.
+
+    Raises:
+        InputError: for more lines than can be held, and for bytes that are no text in UTF-8.
+    """
+    count = max(content.count(b"\n"), content.count(b"\r"))
+    if count > MOST_LINES:
+        raise InputError(f"has {count} lines, the limit is {MOST_LINES}; cut it into shorter recordings")
+    return _decode(content).replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
 def _decode(content: bytes) -> str:
@@ -68,6 +98,23 @@ def _decode(content: bytes) -> str:
     if "\0" in text:
         raise InputError("is a binary file, not text; save it as CSV in UTF-8")
     return text
+
+
+def _excel(lines: Sequence[str], layout: ColumnMap) -> tuple[ColumnMap, int]:
+    """Take up a first line such as `sep=;`; return the layout and the number of lines to skip."""
+    line = _EXCEL.fullmatch(lines[0].strip())
+    found, skip = layout, layout.skip_rows
+    if line is not None and not skip:
+        if layout.delimiter not in (ColumnMap.delimiter, line[1]):
+            raise InputError(
+                f"row 1: has {quoted(line[0])}, but [columns] has delimiter = {layout.delimiter!r}; leave it out there"
+            )
+        found, skip = replace(layout, delimiter=line[1]), 1
+    if found.decimal == found.delimiter:
+        raise InputError(
+            f"decimal and delimiter are both {found.decimal!r}; set delimiter = ';' or what the file has in [columns]"
+        )
+    return found, skip
 
 
 def _preamble(lines: Sequence[str], skip: int) -> tuple[int, dict[str, float]]:
@@ -107,31 +154,6 @@ def _header(lines: Sequence[str], first: int, layout: ColumnMap) -> tuple[list[s
                     f" points, or give a [columns] table with delimiter = {other!r}"
                 )
     return header, last + 1
-
-
-def _places(header: Sequence[str], layout: ColumnMap) -> dict[str, Source]:
-    """Replace the header texts of a column map by column numbers."""
-    texts = [cell.strip() for cell in header]
-    sources: dict[str, Source] = {}
-    for name, source in layout.sources.items():
-        place = source.place
-        if isinstance(place, str):
-            if texts.count(place.strip()) > 1:
-                raise InputError(f"column '{name}': the header has {quoted(place)} twice; use 'index'")
-            if place.strip() not in texts:
-                raise InputError(f"column '{name}': no {quoted(place)} in the header{_hint(place, texts)}")
-            place = texts.index(place.strip())
-        twin = next((other for other in sources if sources[other].place == place), None)
-        if twin:
-            raise InputError(f"columns '{twin}' and '{name}': both map to column {place}; correct one of them")
-        sources[name] = Source(place, source.unit, source.sign, source.scale)
-    return sources
-
-
-def _hint(text: str, texts: Sequence[str]) -> str:
-    if len(texts) == 1:
-        return f", which is one column, {quoted(texts[0])}: is the delimiter right?"
-    return did_you_mean(text, [other[:40] for other in texts[:20]])
 
 
 def _check_header(header: Sequence[str], row: int, labels: dict[int, str], width: int, delimiter: str) -> None:

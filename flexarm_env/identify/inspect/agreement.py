@@ -1,0 +1,107 @@
+"""How far a measured signal agrees with a modelled one: factor, lag and share explained, whatever the drift."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.identify.settings import MotionFaults
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """A measured signal as a multiple of a modelled one.
+
+    Attributes:
+        gain: the measured over the modelled.
+        lag: time by which the measured is late [s].
+        share: of the measured signal's variance that the multiple explains.
+        power: variance of the measured signal, in its unit squared.
+    """
+
+    gain: float
+    lag: float
+    share: float
+    power: float = 0.0
+
+    def is_within(self, factor: float) -> bool:
+        """Whether the gain is 1 within a factor."""
+        return 1.0 / factor < self.gain < factor
+
+
+NOTHING_IN_COMMON = Agreement(0.0, 0.0, 0.0)
+
+
+def agreement(measured: Floats, modelled: Floats, cell: float, numbers: MotionFaults) -> Agreement:
+    """Fit a gain by least squares in windows, each with an offset and a drift of its own.
+
+    Args:
+        measured: (cells,).
+        modelled: (cells,).
+        cell: length of a cell [s].
+        numbers: of the method.
+    """
+    length = min(max(round(numbers.window / cell), numbers.least_window_cells), len(measured))
+    count = len(measured) // length
+    y, p = (_without_line(part[: count * length].reshape(count, length)) for part in (measured, modelled))
+    known = np.isfinite(y).all(axis=1) & np.isfinite(p).all(axis=1)
+    y, p = y[known], p[known]
+    own, model, both = float((y * y).sum()), float((p * p).sum()), float((y * p).sum())
+    if not own * model > 0.0:
+        return NOTHING_IN_COMMON
+    return Agreement(both / model, 0.0, both / own * both / model, own / y.size)
+
+
+def agreement_late(measured: Floats, modelled: Floats, cell: float, numbers: MotionFaults) -> Agreement:
+    """Fit a gain at the lag at which a signal agrees best: at none where it has the model's shape without."""
+    at_once = agreement(measured, modelled, cell, numbers)
+    if at_once.share > numbers.same_shape:
+        return at_once
+    tried = [at_once]
+    for lag in _likely_lags(measured, modelled, cell, numbers):
+        best, step = _at_lag(measured, modelled, lag, cell, numbers), numbers.lag_step
+        while step > numbers.lag_resolution:
+            sides = (_at_lag(measured, modelled, best.lag + side * step, cell, numbers) for side in (-1, 1))
+            better = max(sides, key=lambda one: one.share)
+            if better.share > best.share:
+                best = better
+            else:
+                step *= 0.5
+        tried.append(best)
+    return max(tried, key=lambda one: one.share)
+
+
+def _at_lag(measured: Floats, modelled: Floats, lag: float, cell: float, numbers: MotionFaults) -> Agreement:
+    """Fit a gain at a lag [s]."""
+    cells = np.arange(len(modelled))
+    moved = np.interp(cells - lag / cell, cells, modelled, left=np.nan, right=np.nan)
+    return replace(agreement(measured, moved, cell, numbers), lag=lag)
+
+
+def _likely_lags(measured: Floats, modelled: Floats, cell: float, numbers: MotionFaults) -> list[float]:
+    """List the lags [s] of the largest and the smallest correlation."""
+    length = len(measured)
+    widest = round(min(numbers.longest_lag, numbers.longest_lag_share * length * cell) / cell)
+    y, p = (np.fft.rfft(_fast_part(part, round(numbers.window / cell)), 2 * length) for part in (measured, modelled))
+    correlation = np.fft.irfft(y * np.conj(p), 2 * length)
+    lags = np.concatenate([np.arange(widest + 1), np.arange(-widest, 0)])
+    found = correlation[lags]
+    return [float(lags[place]) * cell for place in {int(np.argmax(found)), int(np.argmin(found))}]
+
+
+def _fast_part(values: Floats, length: int) -> Floats:
+    """Subtract a moving mean; what is not known or not finite becomes zero."""
+    known = np.where(np.isfinite(values), values, 0.0)
+    box = np.ones(min(length, len(values)))
+    return known - np.convolve(known, box, "same") / np.convolve(np.ones(len(values)), box, "same")
+
+
+def _without_line(windows: Floats) -> Floats:
+    """Remove mean and slope from windows (windows, cells)."""
+    line = np.arange(windows.shape[1]) - 0.5 * (windows.shape[1] - 1)
+    level = windows - windows.mean(axis=1, keepdims=True)
+    return np.asarray(level - np.outer(level @ line, line) / (line @ line))

@@ -1,0 +1,60 @@
+"""Signals that are late or early against the command, or against the other signals."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexarm_env.identify.inspect.evidence import HUB, Evidence
+from flexarm_env.identify.inspect.fault import Fault
+
+
+def late_signals(evidence: Evidence) -> list[Fault]:
+    """Find a lag that all signals have in common, or that of single signals beside others that are in time."""
+    off = {signal: found.lag for signal, found in evidence.late.items() if _is_late(evidence, signal)}
+    lags = list(off.values())
+    if off and len(off) == len(evidence.late) and max(lags) - min(lags) < evidence.numbers.same_lag:
+        return [_fault(evidence, "", float(np.median(lags)))]
+    return _hub_out_of_step(evidence) or [
+        _fault(evidence, signal, lag) for signal, lag in off.items() if _others_are_in_time(evidence, signal)
+    ]
+
+
+def _hub_out_of_step(evidence: Evidence) -> list[Fault]:
+    """Find a lag between angle and speed, and blame the one that is less like the model."""
+    if evidence.hub is None or evidence.hub_in_step:
+        return []
+    numbers, found = evidence.numbers, evidence.run.hub_late(evidence.gear_ratio)
+    if found.share < numbers.alike or abs(found.lag) < numbers.least_lag or not found.is_within(numbers.least_factor):
+        return []
+    angle, speed = (evidence.at_once[signal].share for signal in HUB)
+    return [_fault(evidence, HUB[0], found.lag) if angle < speed else _fault(evidence, HUB[1], -found.lag)]
+
+
+def _is_late(evidence: Evidence, signal: str) -> bool:
+    """Whether a signal is like the model's at a lag, and much less so without."""
+    numbers, late, at_once = evidence.numbers, evidence.late[signal], evidence.at_once[signal]
+    gained = 1.0 - late.share < numbers.unexplained * (1.0 - at_once.share)
+    return gained and abs(late.lag) > numbers.least_lag and late.share > numbers.similar and late.is_within(numbers.plausible)
+
+
+def _others_are_in_time(evidence: Evidence, signal: str) -> bool:
+    """Whether a signal of the hub beside one is like the model's without a lag."""
+    numbers = evidence.numbers
+    beside = [other for name, other in evidence.late.items() if name != signal]
+    return any(other.share > numbers.similar and abs(other.lag) < numbers.same_lag for other in beside)
+
+
+def _fault(evidence: Evidence, signal: str, lag: float) -> Fault:
+    recording, time = evidence.recording, f"{abs(lag):.3g} s"
+    late = "late" if lag > 0.0 else "early"
+    message = f"{signal} is {time} {late} against the model's" if signal else f"all signals are {time} {late} against the command"
+    return Fault(
+        recording=recording.name,
+        source=recording.source,
+        signal=signal,
+        kind="clock",
+        value=lag,
+        unit="s",
+        message=message,
+        hint=f'{signal or "time"} = {{ shift = "{lag:.3g} s" }}',
+    )

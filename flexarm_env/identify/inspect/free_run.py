@@ -1,0 +1,168 @@
+"""A recording beside the model's free run under its commands, both as means over short cells of time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.inspect.agreement import Agreement, agreement, agreement_late
+from flexarm_env.identify.replay.dataset import Dataset, prepare
+from flexarm_env.identify.replay.initial_state import Start, find_start
+from flexarm_env.identify.replay.replay import replay
+from flexarm_env.identify.settings import MotionFaults, Settings
+from flexarm_env.plant.plant import Plant
+from flexarm_env.recordings.recording import Recording
+
+Floats = NDArray[np.float64]
+Table = dict[str, Agreement]
+
+
+@dataclass(frozen=True)
+class FreeRun:
+    """A recording beside the model's free run.
+
+    Attributes:
+        signals: names in the order of the columns.
+        cell: length of a cell [s].
+        measured: (cells, signals) means, SI units; NaN where a signal has no value for long.
+        modelled: (cells, signals) means of the model's readings.
+        noise: (signals,) standard deviation of a cell's mean, as the arm states it.
+        numbers: of the method.
+    """
+
+    signals: tuple[str, ...]
+    cell: float
+    measured: Floats
+    modelled: Floats
+    noise: Floats
+    numbers: MotionFaults
+
+    def agreement(self, signal: str, model: str) -> Agreement:
+        """Compare a measured signal with a modelled one, without a lag."""
+        return agreement(*self._pair(signal, model), self.cell, self.numbers)
+
+    def at_once(self) -> Table:
+        """Compare every signal with its model, without a lag."""
+        return {signal: self.agreement(signal, signal) for signal in self.signals}
+
+    def late(self) -> Table:
+        """Compare every signal with its model, at the lag of each."""
+        return {signal: agreement_late(*self._pair(signal, signal), self.cell, self.numbers) for signal in self.signals}
+
+    def hub(self, gear_ratio: float, angle: str = "arm_angle", speed: str = "motor_speed") -> Agreement:
+        """Compare the column of an angle with the integral of that of a motor's speed over the gear ratio."""
+        return agreement(*self._turned(gear_ratio, angle, speed), self.cell, self.numbers)
+
+    def hub_late(self, gear_ratio: float) -> Agreement:
+        """Compare them at the lag of the angle behind the speed at which they agree best."""
+        return agreement_late(*self._turned(gear_ratio, "arm_angle", "motor_speed"), self.cell, self.numbers)
+
+    def _turned(self, gear_ratio: float, angle: str, speed: str) -> tuple[Floats, Floats]:
+        angles, speeds = (self.measured[:, self.signals.index(signal)] for signal in (angle, speed))
+        turned = np.cumsum(np.where(np.isfinite(speeds), speeds, 0.0)) - 0.5 * speeds
+        return angles, turned * (self.cell / gear_ratio)
+
+    def leaves_noise(self, signal: str, found: Agreement) -> bool:
+        """Whether an agreement leaves hardly more of a signal than its noise."""
+        if not found.power:
+            return False
+        scale = max(abs(found.gain), 1.0)
+        noise = (scale * float(self.noise[self.signals.index(signal)])) ** 2 / found.power
+        return found.share + noise > self.numbers.exact
+
+    def _pair(self, signal: str, model: str) -> tuple[Floats, Floats]:
+        return self.measured[:, self.signals.index(signal)], self.modelled[:, self.signals.index(model)]
+
+
+@dataclass(frozen=True)
+class Replayer:
+    """An arm and one recording, prepared for free runs.
+
+    Attributes:
+        plant: the arm with the recording's payload.
+        dataset: the recording alone, with its initial state.
+    """
+
+    plant: Plant
+    dataset: Dataset
+
+    def free_run(self, command_factor: float = 1.0) -> FreeRun:
+        """Replay the commands divided by a factor."""
+        dataset = self.dataset
+        numbers, run = dataset.settings.motion, dataset.runs[0]
+        modelled = replay(self.plant, replace(run, command=run.command / command_factor), dataset)
+        cell = max(dataset.interval, numbers.cell)
+        measured, modelled = (cell_means(run.time, values, cell, numbers.longest_gap) for values in (run.measured, modelled))
+        noise = dataset.noise * math.sqrt(dataset.interval / cell)
+        return FreeRun(dataset.signals, cell, measured, modelled, noise, numbers)
+
+
+def replayer(arm: Arm, recording: Recording, settings: Settings) -> Replayer:
+    """Prepare a recording for free runs of an arm, from the initial state with which the signals agree best.
+
+    Raises:
+        InputError: for a recording that does not fit the arm.
+    """
+    reduced, dataset = prepare(arm, [recording], settings)
+    (plant,) = dataset.plants(reduced).values()
+    tried = [Replayer(plant, started) for started in _starts(dataset)]
+    return max(tried, key=_agreed) if len(tried) > 1 else tried[0]
+
+
+def _agreed(tried: Replayer) -> float:
+    return sum(found.share for found in tried.free_run().late().values())
+
+
+def _starts(dataset: Dataset) -> Iterator[Dataset]:
+    """Yield the dataset with its start as read; where that is not at rest, also as each signal alone gives it, and at rest."""
+    run, settings = dataset.runs[0], dataset.settings.initial_states
+    yield dataset
+    if not (run.start.moving or run.start.vibrating):
+        return
+    for column, signal in enumerate(dataset.signals):
+        start = find_start(run.time, run.measured[:, [column]], [signal], dataset.noise[[column]], settings)
+        others = np.full_like(dataset.noise, np.inf)
+        others[column] = dataset.noise[column]
+        yield replace(dataset, runs=(replace(run, start=start),), noise=others)
+    rest = Start(0.0, 0.0, moving=False, vibrating=False, samples=run.start.samples)
+    yield replace(dataset, runs=(replace(run, start=rest),))
+
+
+def cell_means(time: Floats, values: Floats, cell: float, longest_gap: int) -> Floats:
+    """Average samples over cells of time; readings that are not finite do not count.
+
+    Args:
+        time: (samples,) [s], from 0.
+        values: (samples, signals).
+        cell: length of a cell [s].
+        longest_gap: cells without a reading that are bridged by a straight line.
+
+    Returns:
+        (cells, signals); NaN in longer gaps.
+    """
+    place = np.floor((time + 0.5 * np.median(np.diff(time))) / cell).astype(int)
+    means = np.full((place[-1] + 1, values.shape[1]), np.nan)
+    for column, signal in enumerate(values.T):
+        known = np.isfinite(signal)
+        counts = np.bincount(place[known], minlength=len(means))
+        sums = np.bincount(place[known], weights=signal[known], minlength=len(means))
+        full = np.flatnonzero(counts)
+        if len(full):
+            means[:, column] = _bridged(len(means), full, sums[full] / counts[full], longest_gap)
+    return means
+
+
+def _bridged(count: int, full: NDArray[np.intp], means: Floats, longest_gap: int) -> Floats:
+    """Bridge short gaps between cells with readings, (count,)."""
+    cells = np.arange(count)
+    bridged = np.interp(cells, full, means)
+    after = np.minimum(np.searchsorted(full, cells), len(full) - 1)
+    before = np.maximum(np.searchsorted(full, cells, side="right") - 1, 0)
+    bridged[np.abs(full[after] - full[before]) > longest_gap + 1] = np.nan
+    bridged[(cells < full[0]) | (cells > full[-1])] = np.nan
+    return bridged

@@ -1,0 +1,75 @@
+"""The readings of one signal in one recording, with the step and the noise that they show."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.identify.settings import Inspecting
+from flexarm_env.recordings.recording import Recording
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Series:
+    """Readings of a signal, those left out that were not measured.
+
+    Attributes:
+        rows: (n,) samples of the recording that they stand in.
+        values: (n,) in the signal's unit.
+        step: smallest change between two readings in a row; 0 where none changes.
+        noise: standard deviation that the second differences show, at least that of rounding to the step.
+    """
+
+    rows: Integers
+    values: Floats
+    step: float
+    noise: float
+
+    @classmethod
+    def of(cls, recording: Recording, signal: str, numbers: Inspecting) -> Series:
+        """Take the readings of a signal out of a recording."""
+        rows = np.flatnonzero(np.isfinite(recording.signals[signal]))
+        values = recording.signals[signal][rows]
+        changes = np.abs(np.diff(values))
+        real = changes[changes > numbers.rounding * np.ptp(values)] if len(values) > 1 else changes
+        step = float(real.min()) if real.size else 0.0
+        second = np.median(np.abs(np.diff(values, 2))) if len(values) > 2 else 0.0
+        return cls(rows, values, step, max(float(second) * numbers.from_second_differences, step * numbers.from_rounding))
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    @property
+    def changes(self) -> Floats:
+        """Changes (n - 1,) from one reading to the next."""
+        return np.diff(self.values)
+
+    @property
+    def flicker(self) -> float:
+        """Share of readings at which the signal turns back at once: two thirds for white noise, next to none for a motion."""
+        return float(np.mean(self.changes[1:] * self.changes[:-1] < 0.0)) if len(self) > 2 else 0.0
+
+    def runs(self) -> tuple[Integers, Integers]:
+        """Find stretches of equal readings; return the index of the first reading of each, and their lengths."""
+        starts = np.flatnonzero(np.r_[True, self.changes != 0.0]).astype(np.int64)
+        return starts, np.diff(np.r_[starts, len(self)]).astype(np.int64)
+
+    def most_repeats(self, elsewhere: NDArray[np.bool_], numbers: Inspecting) -> float:
+        """Compute the largest share of repeated readings in any stretch of the signal.
+
+        Args:
+            elsewhere: (n,) readings that count.
+            numbers: of the inspection.
+        """
+        length = (len(self) - 1) // numbers.stretches
+        pieces = length * numbers.stretches
+        repeated, counted = (self.changes == 0.0) & elsewhere[1:], elsewhere[1:]
+        sums = [part[:pieces].reshape(numbers.stretches, length).sum(axis=1) for part in (repeated, counted)]
+        enough = sums[1] >= numbers.fewest_at_rail
+        shares = sums[0][enough] / sums[1][enough]
+        return float(np.clip(shares.max() if shares.size else 1.0, numbers.least_repeats, 1.0))

@@ -1,0 +1,42 @@
+"""Signals, or commands, that run against the model."""
+
+from __future__ import annotations
+
+from flexarm_env.identify.inspect.evidence import HUB, Evidence
+from flexarm_env.identify.inspect.fault import Fault
+
+
+def signs(evidence: Evidence) -> list[Fault]:
+    """Find signals that run against the model while others run with it; the command where all run against it."""
+    least = evidence.numbers.shared_motion
+    if evidence.hub is not None and evidence.hub_in_step and evidence.hub.gain < 0.0:
+        return [_fault(evidence, min(HUB, key=lambda signal: evidence.at_once[signal].gain), "")]
+    shown = {signal: found.gain for signal, found in evidence.at_once.items() if found.share > least}
+    against = [signal for signal, gain in shown.items() if gain < 0.0]
+    if len(against) < len(shown):
+        return [_fault(evidence, signal, "") for signal in against]
+    if not against or len(shown) < len(evidence.signals):
+        return []
+    command = evidence.recording.input_kind
+    if len(against) > 1:
+        return [_fault(evidence, command, "")]
+    (signal,) = against
+    mended = evidence.replayer.free_run(-1.0).agreement(signal, signal)
+    first, second = (command, signal) if mended.share > evidence.at_once[signal].share else (signal, command)
+    return [_fault(evidence, first, second)]
+
+
+def _fault(evidence: Evidence, signal: str, rival: str) -> Fault:
+    recording = evidence.recording
+    also = f" (or {rival} does: with one signal alone the two look alike)" if rival else ""
+    return Fault(
+        recording=recording.name,
+        source=recording.source,
+        signal=signal,
+        kind="sign",
+        value=-1.0,
+        unit="",
+        message=f"{signal} runs against the model{also}",
+        hint=f"{signal} = {{ sign = -1 }}",
+        other=rival,
+    )

@@ -1,0 +1,162 @@
+"""The size at which an effect would just be accepted, with what the constants could take over projected out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.select.signatures import Baseline
+from flexarm_env.identify.select.starts import candidates, sized, starts_of
+from flexarm_env.identify.settings import DetectionLimits
+
+#: Rise of the squared error over noise in windows that an arm with one effect more makes.
+Rise = Callable[[Arm], float]
+
+
+@dataclass(frozen=True)
+class EffectSize:
+    """An effect at a multiple of one of its starts.
+
+    Attributes:
+        base: the arm that lacks it.
+        name: of the effect.
+        start: its values at a multiple of 1.
+        multiple: of the size.
+        low: largest multiple that is known to be too small.
+        high: smallest multiple that is known to be large enough.
+    """
+
+    base: Baseline
+    name: str
+    start: dict[str, float]
+    multiple: float = 1.0
+    low: float = 0.0
+    high: float = math.inf
+
+    @property
+    def key(self) -> str:
+        """The parameter that measures the effect's strength."""
+        known = self.base.arm.known[self.name].parameters
+        return next(key for key, p in known.items() if p.null is not None and self.start[key] != 0.0)
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Parameters at this multiple."""
+        return sized(self.base.arm, self.name, self.start, self.multiple)
+
+    @property
+    def value(self) -> float:
+        """The present size."""
+        return abs(self.values[self.key])
+
+    @property
+    def arm(self) -> Arm:
+        """The arm with the effect."""
+        return self.base.arm.with_effect(self.name, **self.values)
+
+    @property
+    def numbers(self) -> DetectionLimits:
+        """Numbers of the steps."""
+        return self.base.objective.dataset.settings.detection
+
+    def change(self) -> tuple[float, float]:
+        """Compute the variance by which the effect changes the innovations, and that which constants cannot take over."""
+        change = self.base.change(self.name, self.values)
+        left, count = self.base.unexplained(change), self.base.objective.dataset.readings(held_out=False)
+        return float(np.sum(change**2) / count), float(np.sum(left**2) / count)
+
+    def stepped(self, wanted: float, rise: float) -> EffectSize:
+        """Scale the size to where a variance that grows with its square is as wanted, or half way between known sizes.
+
+        A limit of the command or a stiff joint has no such growth: up to some size it changes nothing.
+        """
+        factor = math.sqrt(wanted / max(rise, self.numbers.least_change))
+        multiple = self.multiple * min(max(factor, 1.0 / self.numbers.step_down), self.numbers.step_up)
+        low, high = (self.multiple, self.high) if rise < wanted else (self.low, self.multiple)
+        if not low < multiple < high:
+            multiple = math.sqrt(low * high)
+        return replace(self, multiple=multiple, low=low, high=high)
+
+    @property
+    def is_bracketed(self) -> bool:
+        """Whether a smaller size is known to be too small and a larger one large enough."""
+        return self.low > 0.0 and self.high < math.inf
+
+    def factor_from(self, other: EffectSize) -> float:
+        """Compute the logarithm of the factor between two sizes, as an absolute value."""
+        return abs(math.log(self.multiple / other.multiple))
+
+
+def sizeable(arm: Arm) -> list[str]:
+    """List the effects that an arm could lack and that have a size."""
+    known = arm.known
+    return [
+        name
+        for name in candidates(arm)
+        if known[name].fitted and any(p.null is not None for p in known[name].parameters.values())
+    ]
+
+
+def smallest_detectable(base: Baseline, name: str, rise_of: Rise) -> EffectSize | None:
+    """Estimate the size at which one effect would just be accepted; None where no size within its bounds would be.
+
+    Args:
+        base: the arm that lacks it.
+        name: of the effect.
+        rise_of: measures what the effect does to the error in windows.
+    """
+    dataset = base.objective.dataset
+    numbers, least = dataset.settings.detection, dataset.settings.selecting.least_removed
+    starts = starts_of(base.arm, name, dataset)
+    some = starts[:: -(-len(starts) // numbers.most_starts)]
+    tried = [_by_innovations(EffectSize(base, name, start), least / numbers.in_windows) for start in some]
+    size, share = max(tried, key=lambda pair: pair[0].multiple)
+    found = _by_windows(size, least, share, rise_of)
+    if found is None:
+        return None
+    parameter = base.arm.known[name].parameters[found.key]
+    return found if parameter.low < found.value < parameter.high else None
+
+
+def _by_innovations(size: EffectSize, wanted: float) -> tuple[EffectSize, float]:
+    """Scale a size until the change of the innovations that constants cannot take over is as wanted.
+
+    An effect with a state of its own changes them however small it is, with the gains of the observer. It keeps its first size.
+
+    Returns:
+        The size, and the share of its change that constants cannot take over; 1 where innovations do not give the size.
+    """
+    first, before, last, share, still = size, size, math.inf, 1.0, 0.0
+    for _ in range(size.numbers.steps):
+        change, left = size.change()
+        if size.multiple < before.multiple and left > size.numbers.stays * last:
+            return first, 1.0
+        if change > size.numbers.least_change:
+            share = left / change
+        else:
+            still = max(still, size.multiple)
+        before, last, size = size, left, size.stepped(wanted, left)
+        if size.factor_from(before) < size.numbers.close:
+            break
+    return replace(size, low=still, high=math.inf), share
+
+
+def _by_windows(size: EffectSize, wanted: float, share: float, rise_of: Rise) -> EffectSize | None:
+    """Correct a size by the rise of the error in windows, until a correction is small; None where it never rises.
+
+    A size below which the error no longer falls is kept: what is left are differences of the observers.
+    """
+    before, last, rises, close = size, math.inf, False, size.numbers.close
+    for _ in range(size.numbers.window_steps):
+        rise = rise_of(size.arm)
+        if size.multiple < before.multiple and rise > size.numbers.stays * last:
+            return before
+        rises = rises or rise > 0.0
+        before, last, size = size, rise, size.stepped(wanted, share * rise)
+        if size.factor_from(before) < (close if size.is_bracketed else math.log(size.numbers.step_up) - close):
+            break
+    return size if rises else None

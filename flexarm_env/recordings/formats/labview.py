@@ -1,0 +1,124 @@
+"""LabVIEW measurement files (.lvm): sections of tags, then columns of numbers with a comment in the last."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from flexarm_env.errors import InputError
+from flexarm_env.recordings.cells import count_cells, cut, is_blank
+from flexarm_env.recordings.columns import ColumnMap
+from flexarm_env.recordings.formats.base import Format
+from flexarm_env.recordings.formats.text import read_rows, text_lines
+from flexarm_env.recordings.messages import quoted
+from flexarm_env.recordings.table import Table
+
+# The specification of the LabVIEW measurement file.
+_FIRST_LINE, _END, _SEGMENT = "LabVIEW Measurement", "***End_of_Header***", "Channels"
+_SEPARATORS = {"Tab": "\t", "Comma": ","}
+_TIME, _COMMENT = "X_Value", "Comment"
+
+
+@dataclass(frozen=True)
+class _Segment:
+    """Rows under one header: its cells, its index in the file, the texts of the rows and their indices."""
+
+    header: list[str]
+    place: int
+    rows: list[str]
+    places: list[int]
+
+
+def read(content: bytes, columns: ColumnMap | None) -> Table:
+    """Read the content of a .lvm file by its column map; delimiter and decimal mark are the file's own.
+
+    Segments with the same columns follow each other. Where the file holds no times, `X_Value` is `X0` + k `Delta_X`.
+
+    Args:
+        content: of the file.
+        columns: its column map.
+
+    Raises:
+        InputError: naming row (line of the file, counted from 1) and column.
+    """
+    lines = text_lines(content)
+    if not lines[0].startswith(_FIRST_LINE):
+        raise InputError(
+            f"row 1: is {quoted(lines[0])}, where such a file has {_FIRST_LINE!r}; rename it to .txt if it is a table"
+        )
+    layout, evenly = _layout(lines, columns or ColumnMap())
+    first, *others = _segments(lines, layout, evenly)
+    for other in others:
+        if other.header != first.header:
+            raise InputError(f"row {other.place + 1}: has other columns than row {first.place + 1}; save each segment to a file")
+    segments = (first, *others)
+    rows = [row for segment in segments for row in segment.rows]
+    return read_rows(rows, [place for one in segments for place in one.places], first.header, first.place + 1, layout)
+
+
+def _layout(lines: Sequence[str], columns: ColumnMap) -> tuple[ColumnMap, bool]:
+    """Read the file's own section: return the map with its delimiter and decimal mark, and whether no times are written."""
+    line = next((line for line in lines if line.startswith("Separator")), "Separator\tTab")
+    delimiter = _SEPARATORS.get(line.removeprefix("Separator")[1:].strip())
+    if delimiter is None:
+        raise InputError(f"has the separator {quoted(line)}; save it with one of {', '.join(_SEPARATORS)}")
+    tags = _tags(lines, delimiter)
+    # A comma that separates cells cannot be the decimal mark, and its own tag would be cut in two.
+    decimal = "," if delimiter != "," and tags.get("Decimal_Separator", ".") == "," else "."
+    return replace(columns, delimiter=delimiter, decimal=decimal), tags.get("X_Columns", "One") == "No"
+
+
+def _tags(lines: Sequence[str], delimiter: str) -> dict[str, str]:
+    """Read the tags of a section up to its end, each with its first value."""
+    found = {}
+    for line in lines:
+        if line.startswith(_END):
+            break
+        name, _, value = line.partition(delimiter)
+        found[name.strip()] = value.split(delimiter)[0].strip()
+    return found
+
+
+def _segments(lines: Sequence[str], layout: ColumnMap, evenly: bool) -> Iterator[_Segment]:
+    """Cut the lines into segments: each begins after the tags of its own, the first at least after those of the file."""
+    ends = [row for row, line in enumerate(lines) if line.startswith(_END)]
+    tagged = [row for row, line in enumerate(lines) if line.startswith(_SEGMENT + layout.delimiter)]
+    if not ends or len(ends) != 1 + len(tagged):
+        raise InputError(f"has {len(ends)} times {_END} for {1 + len(tagged)} headers; it is cut off, or changed")
+    starts = ends[1:] or ends
+    for number, (start, stop) in enumerate(zip(starts, [*tagged[1:], len(lines)], strict=True)):
+        places = [row for row in range(start + 1, stop) if not is_blank(lines[row])]
+        if not places:
+            raise InputError(f"row {start + 1}: no columns follow; the file is cut off")
+        header = [cell.strip() for cell in cut(lines[places[0]], layout.delimiter)]
+        rows = [_uncommented(lines[row], header, layout.delimiter) for row in places[1:]]
+        if evenly and _TIME in header:
+            rows = _with_times(
+                rows, header.index(_TIME), _tags(lines[tagged[number] :] if tagged else [], layout.delimiter), layout
+            )
+        yield _Segment(header[:-1] if header[-1] == _COMMENT else header, places[0], rows, places[1:])
+
+
+def _uncommented(row: str, header: Sequence[str], delimiter: str) -> str:
+    """Cut the comment off a row, which may lack its cell."""
+    if header[-1] != _COMMENT or count_cells(row, delimiter) != len(header):
+        return row
+    return row.rpartition(delimiter)[0] if '"' not in row else delimiter.join(cut(row, delimiter)[:-1])
+
+
+def _with_times(rows: Sequence[str], place: int, tags: Mapping[str, str], layout: ColumnMap) -> list[str]:
+    """Write the times X0 + k Delta_X into the empty cells of rows."""
+    try:
+        first, step = (float(tags[name].replace(layout.decimal, ".")) for name in ("X0", "Delta_X"))
+    except (KeyError, ValueError):
+        raise InputError("has neither times nor an X0 and a Delta_X; save it with X columns, or give time a rate") from None
+    timed = []
+    for number, row in enumerate(rows):
+        cells = row.split(layout.delimiter)
+        if place < len(cells) and not cells[place].strip():
+            cells[place] = repr(first + number * step).replace(".", layout.decimal)
+        timed.append(layout.delimiter.join(cells))
+    return timed
+
+
+FORMAT = Format("LabVIEW measurement file", (".lvm",), ("column", "index"), read)

@@ -1,0 +1,102 @@
+"""Parquet tables: FlexArm's own header as names of columns, or any other by a column map; lists by `name[index]`, from 0."""
+
+from __future__ import annotations
+
+import io
+import re
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env import units
+from flexarm_env.errors import InputError
+from flexarm_env.recordings.columns import ColumnMap, Source
+from flexarm_env.recordings.formats.base import Format
+from flexarm_env.recordings.formats.extras import library
+from flexarm_env.recordings.headers import absence, header_sources
+from flexarm_env.recordings.messages import quoted
+from flexarm_env.recordings.table import MOST_LINES, Table
+
+_ELEMENT = re.compile(r"(.*)\[(\d{1,9})\]")
+_EPISODE = "episode_index"
+
+
+def read(content: bytes, columns: ColumnMap | None) -> Table:
+    """Read the content of a Parquet file.
+
+    Args:
+        content: of the file.
+        columns: its column map, if there is one.
+
+    Raises:
+        InputError: for a file that pyarrow cannot read, and for a column that is absent or holds no numbers.
+    """
+    parquet = library("pyarrow.parquet", "Parquet file")
+    arrow = library("pyarrow", "Parquet file")
+    try:
+        file = parquet.ParquetFile(io.BytesIO(content))
+        rows, names = file.metadata.num_rows, list(file.schema_arrow.names)
+    except (arrow.ArrowException, OSError, ValueError) as error:
+        raise InputError(f"is damaged or no Parquet file: {quoted(str(error))}") from None
+    if rows > MOST_LINES:
+        raise InputError(f"has {rows} rows, the limit is {MOST_LINES}; cut it into shorter recordings")
+    found = _places(names, columns or ColumnMap())
+    try:
+        if _EPISODE in names:
+            _check_episodes(file.read([_EPISODE]).column(0).to_numpy())
+        values = {
+            name: _numbers(name, file.read([column], use_threads=False).column(0), element, source.unit, arrow.types)
+            for name, (source, column, element) in found.items()
+        }
+    except (arrow.ArrowException, OSError, UnicodeDecodeError) as error:
+        raise InputError(f"is damaged: {quoted(str(error))}") from None
+    return Table(values, {name: source for name, (source, _, _) in found.items()})
+
+
+def _places(names: list[str], layout: ColumnMap) -> dict[str, tuple[Source, str, int | None]]:
+    """Find for each quantity its source, the name of its column, and the element of its lists (None for plain numbers)."""
+    if layout.refines:
+        return {name: (source, names[int(source.place)], None) for name, source in header_sources(names, layout).items()}
+    found: dict[str, tuple[Source, str, int | None]] = {}
+    for name, source in layout.sources.items():
+        match = None if source.place in names else _ELEMENT.fullmatch(str(source.place))
+        place = match[1] if match else source.place
+        if isinstance(place, int) and place < len(names):
+            place = names[place]
+        if place not in names:
+            raise InputError(f"column '{name}': no {quoted(str(place))} in the header{absence(str(place), names)}")
+        found[name] = (source, str(place), int(match[2]) if match else None)
+    return found
+
+
+def _check_episodes(episodes: NDArray[np.generic]) -> None:
+    """Refuse a LeRobot file with several episodes, whose times begin again."""
+    several = np.unique(episodes)
+    if len(several) > 1:
+        raise InputError(f"has {len(several)} episodes in '{_EPISODE}', which are as many recordings; save each to a file")
+
+
+def _numbers(name: str, column: Any, element: int | None, unit: str, types: Any) -> NDArray[np.float64]:
+    """Read the numbers of a column; times with a unit of their own are converted to that of the map."""
+    kind = column.type
+    is_list = types.is_list(kind) or types.is_large_list(kind) or types.is_fixed_size_list(kind)
+    if is_list != (element is not None):
+        how = "name one of its elements, as [0] after the column's name" if is_list else "leave [...] out"
+        raise InputError(f"column '{name}': is {quoted(str(kind))}; {how}")
+    if element is not None:
+        rows = column.combine_chunks()
+        lengths = rows.value_lengths().to_numpy(zero_copy_only=False) if not types.is_fixed_size_list(kind) else [kind.list_size]
+        if element >= np.min(lengths, initial=element + 1):
+            raise InputError(f"column '{name}': its lists have {int(np.min(lengths))} elements, no [{element}]; count from 0")
+        column = library("pyarrow.compute", "Parquet file").list_element(rows, element)
+        kind = kind.value_type
+    if types.is_timestamp(kind) or types.is_duration(kind):
+        ticks = column.cast("int64").to_numpy(zero_copy_only=False)
+        return (ticks - ticks[:1]).astype(np.float64) * units.factor(kind.unit, "s") / units.factor(unit, "s")
+    if not (types.is_integer(kind) or types.is_floating(kind) or types.is_decimal(kind) or types.is_boolean(kind)):
+        raise InputError(f"column '{name}': is {quoted(str(kind))}, no numbers; name another")
+    return np.asarray(column.to_numpy(zero_copy_only=False), dtype=np.float64)
+
+
+FORMAT = Format("Parquet file", (".parquet",), ("column", "index"), read, needs_map=False)
