@@ -21,7 +21,8 @@ def rigid() -> Arm:
 
 @pytest.fixture(scope="module")
 def sweep() -> Recording:
-    return simulate(rigid(), "sweep", duration=8.0, rate=1000.0, seed=2)
+    """Of an axis whose loop is not replayed."""
+    return replace(simulate(rigid(), "sweep", duration=8.0, rate=1000.0, seed=2), reference=None)
 
 
 def test_a_rigid_axis_at_a_high_rate_is_thinned_and_a_note_says_so(sweep):
@@ -52,6 +53,12 @@ def test_the_thesis_keeps_its_500_hz(name):
         _, data = prepare(arm, [run])
         assert len(data.runs[0].time) == len(run)
         assert data.notes == ()
+
+
+def test_a_replayed_control_law_keeps_its_rate():
+    looped = simulate(rigid(), "sweep", duration=4.0, rate=1000.0, seed=2)
+    assert rigid().controller is not None
+    assert len(prepare(rigid(), [looped])[1].runs[0].time) == len(looped)
 
 
 def test_a_short_lag_of_a_sensor_keeps_samples(sweep):
@@ -103,6 +110,7 @@ def test_steps_stay_within_their_length_and_gaps_stay(seed, factor):
 def test_constants_and_error_agree_with_those_of_all_samples(sweep):
     model = rigid().with_values({"hub.inertia": 1.2 * rigid().value("hub.inertia")})
     whole, thinned = fit(model, [sweep], rate=0), fit(model, [sweep])
+    assert any(note.startswith("thinned") for note in thinned.notes)
     assert thinned.error["refitted"] == pytest.approx(whole.error["refitted"], abs=0.05)
     for one, other in zip(whole.estimates, thinned.estimates, strict=True):
         assert one.low <= other.value <= one.high, one.path

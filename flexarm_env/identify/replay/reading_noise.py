@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
+from flexarm_env.identify.replay.readings import extent
 from flexarm_env.identify.settings import Preparation
 from flexarm_env.parameters import reading_noise
 from flexarm_env.recordings.noise import Noise, Readings, estimate_noise
@@ -83,7 +84,7 @@ def find_noise(arm: Arm, recordings: Sequence[Recording], motion: Sequence[Float
             runs += [replace(run, motion=replayed[:, i]) for run, replayed in zip(runs, motion, strict=True)]
         written = reading_noise(arm.sensors[signal])
         stated, rounding = (0.0, written) if signal in arm.auto_noise else (written, 0.0)
-        span = float(np.ptp(np.concatenate([run.values[np.isfinite(run.values)] for run in runs])))
+        span = float(extent(np.concatenate([run.values for run in runs])))
         found.append(SensorNoise(signal, stated, estimate_noise(runs), span, rounding))
     return tuple(found)
 
