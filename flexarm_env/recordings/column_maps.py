@@ -40,8 +40,9 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
         ...     "current": {"column": "I", "unit": "mA"},
         ...     "arm_angle": {"column": "encoder", "unit": "deg", "sign": -1},
         ... }
-        >>> load_columns(table).sources["arm_angle"]
-        Source(place='encoder', unit='deg', sign=-1, scale=1.0, key='column', corrections=Corrections())
+        >>> angle = load_columns(table).sources["arm_angle"]
+        >>> angle.place, angle.unit, angle.sign
+        ('encoder', 'deg', -1)
     """
     if isinstance(columns, ColumnMap):
         return columns
