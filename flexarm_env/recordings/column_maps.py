@@ -44,9 +44,9 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
         ...     "current": {"column": "I", "unit": "mA"},
         ...     "arm_angle": {"column": "encoder", "unit": "deg", "sign": -1},
         ... }
-        >>> source = load_columns(table).sources["arm_angle"]
-        >>> source.key, source.place, source.unit, source.sign
-        ('column', 'encoder', 'deg', -1)
+        >>> angle = load_columns(table).sources["arm_angle"]
+        >>> angle.place, angle.unit, angle.sign
+        ('encoder', 'deg', -1)
     """
     if isinstance(columns, ColumnMap):
         return columns
