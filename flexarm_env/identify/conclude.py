@@ -10,9 +10,10 @@ from flexarm_env.experiments.next_run import propose
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.calibrate.intervals import estimates
-from flexarm_env.identify.explain.budget import Budget, budget, budget_notes, rest_notes
+from flexarm_env.identify.explain.budget import Budget, budget, budget_notes, rest_notes, torque_notes
 from flexarm_env.identify.explain.detection_limits import detection_limits
 from flexarm_env.identify.explain.error_steps import ErrorStep, error_steps
+from flexarm_env.identify.explain.unexplained_torque import unexplained_torque
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.origin import with_origin
 from flexarm_env.identify.replay.error_measure import Score, closed_loop_errors
@@ -46,6 +47,10 @@ def conclude(
     model, accepted = (trace.model, trace.accepted) if verdict in NAMING else (base, ())
     steps = error_steps(nominal_score, trace, [a.effect for a in accepted], calibrator)
     shares = budget(steps, calibrator.settings)
+    if verdict in (*NAMING, "unknown"):
+        arms = {"nominal": arm, "constants": base.arm, **({"final": model.arm} if accepted else {})}
+        torque = {name: unexplained_torque(one, recordings, calibrator.settings) for name, one in arms.items()}
+        shares = replace(shares, torque=torque)
     with calibrator.workers.threads():
         final = calibrator.calibrate_on_all_data(model.calibration)
         values = estimates(final, nominal)
@@ -150,4 +155,4 @@ def _gain(step: ErrorStep, refitted: Score) -> float:
 def _notes(verdict: str, steps: Sequence[ErrorStep], shares: Budget, settings: Settings) -> list[str]:
     """Describe the error that the named effects leave, and what a step made worse."""
     rest = rest_notes(shares, steps[-1].after.windows, settings) if verdict in NAMING else []
-    return [*rest, *budget_notes(steps, settings)]
+    return [*rest, *torque_notes(shares, [step.name for step in steps[1:]]), *budget_notes(steps, settings)]

@@ -30,10 +30,14 @@ ADDED_BAR = {
 STEP_BARS = (
     {"color": "#8c8c8c"},
     {"color": AFTER},
-    {"color": "#56b4e9", "pattern": {"shape": "/", "fgcolor": INK, "size": 7, "solidity": 0.15}},
+    {"color": "#56b4e9", "pattern": {"shape": "/", "fgcolor": "white", "size": 8, "solidity": 0.12}},
     {"color": "#009e73", "pattern": {"shape": ".", "fgcolor": "white", "size": 6}},
 )
-NOTHING_BAR = {"color": "white", "line": {"color": BEFORE, "width": 1.5}, "pattern": {"shape": "/", "fgcolor": BEFORE, "size": 6}}
+NOTHING_BAR = {
+    "color": "white",
+    "line": {"color": BEFORE, "width": 1.5},
+    "pattern": {"shape": ".", "fgcolor": BEFORE, "size": 6, "solidity": 0.1},
+}
 RANKED = 8
 
 
@@ -67,7 +71,7 @@ def budget(found: Budget) -> go.Figure:
         values = [100.0 * shares[step] for shares in shown.values()]
         name = "nothing" if step == REST else step.replace("_", " ")
         text = [percent(value / 100.0) for value in values]
-        inside = {"text": text, "textposition": "inside", "insidetextanchor": "middle", "textangle": 0, "constraintext": "none"}
+        inside = {"text": text, "textposition": "inside", "insidetextanchor": "middle", "textangle": 0, "constraintext": "inside"}
         figure.add_trace(go.Bar(x=values, y=list(shown), name=name, orientation="h", marker=look, hoverinfo="x+name", **inside))
     figure.update_yaxes(autorange="reversed", showgrid=False)
     figure.update_xaxes(title_text="share of the excess error [%]", zeroline=True)

@@ -14,8 +14,9 @@ from flexarm_env import Arm
 from flexarm_env.experiments.simulate import simulate
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.conclude import conclude
-from flexarm_env.identify.explain.budget import budget, budget_notes, percent, rest_notes
+from flexarm_env.identify.explain.budget import Budget, budget, budget_notes, percent, rest_notes, torque_notes
 from flexarm_env.identify.explain.error_steps import ErrorStep, error_steps
+from flexarm_env.identify.explain.unexplained_torque import unexplained_torque
 from flexarm_env.identify.replay.dataset import Dataset, prepare
 from flexarm_env.identify.replay.error_measure import Score, SignalError
 from flexarm_env.identify.select.model import judge
@@ -86,16 +87,16 @@ def test_the_rest_is_told_with_its_signal_unit_and_share():
 
 @pytest.mark.parametrize(
     ("share", "text"),
-    [(0.57, "57 %"), (0.994, "99.4 %"), (0.9998, "99.98 %"), (0.0002, "0.02 %"), (0.0, "0 %"), (-0.31, "-31 %")],
+    [(0.57, "57 %"), (0.994, "99.4 %"), (0.9998, "99.98 %"), (0.0002, "0.02 %"), (0.0, "0 %"), (-0.31, "−31 %")],
 )
 def test_a_share_has_the_digits_that_tell_it_from_none_and_all(share, text):
     assert percent(share) == text
 
 
-def short(rate: float = 100.0) -> tuple[Arm, list]:
+def short(duration: float = 3.0) -> tuple[Arm, list]:
     nominal = Arm.load("cu-rigid")
     made = nominal.with_effect("coulomb", **TRUE["coulomb"]).with_effect("constant_torque", **TRUE["constant_torque"])
-    return nominal, [simulate(made, "square", duration=3.0, rate=rate, seed=1)]
+    return nominal, [simulate(made, "square", duration=duration, rate=100.0, seed=1)]
 
 
 def squares(found: Score, dataset: Dataset) -> float:
@@ -168,3 +169,20 @@ def test_nothing_is_named_where_the_verdict_names_nothing():
     assert found.effects == []
     assert list(found.budget.shares) == ["constants", "rest"]
     assert list(found.error) == ["nominal", "refitted", "final"]
+
+
+def test_the_unexplained_torque_is_that_of_the_missing_effects():
+    nominal, recordings = short(4.0)  # the hub moves as long to one side as to the other
+    complete = nominal
+    for name, values in TRUE.items():
+        complete = complete.with_effect(name, **values)
+    missing, rest = (unexplained_torque(arm, recordings) for arm in (nominal, complete))
+    assert missing == pytest.approx(np.hypot(0.05, 0.02), rel=0.1)
+    assert rest < 0.3 * missing
+
+
+def test_the_unexplained_torque_is_told_from_step_to_step():
+    found = Budget(torque={"nominal": 0.083, "constants": 0.081, "final": 0.004})
+    (note,) = torque_notes(found, ["coulomb"])
+    assert note.endswith("0.083 (as given) → 0.081 (constants refitted) → 0.004 (with coulomb) Nm")
+    assert torque_notes(Budget(torque={"nominal": float("nan")}), []) == []

@@ -65,7 +65,7 @@ def test_the_verb_of_a_sentence_follows_the_errors(errors, said):
 def test_the_budget_in_words_counts_down_to_the_rest():
     found = Budget({"constants": -0.05, "backlash": 0.99, "rest": 0.06})
     sentence = words.budget_sentence(found)
-    assert sentence.startswith("Of the excess error (error² − 1), constants -5 %, backlash 99 %, nothing 6 %")
+    assert sentence.startswith("Of the excess error (error² − 1), constants −5 %, backlash 99 %, nothing 6 %")
     assert "less than 0" in sentence
     assert words.budget_sentence(Budget({"constants": float("nan"), "rest": float("nan")})) == ""
 

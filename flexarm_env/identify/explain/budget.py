@@ -29,6 +29,8 @@ class Budget:
         shares: of "constants", of each accepted effect in its order, and of the "rest" that nothing explains.
         signals: the same by signal.
         errors: by signal, the errors "nominal", after "constants" and after each effect.
+        torque: rms torque on the moving hub [Nm] that the arm leaves unexplained: "nominal", after "constants" and "final"; empty
+            where it was not estimated.
 
     Example:
         >>> from flexarm_env.identify.explain.budget import Budget
@@ -39,6 +41,7 @@ class Budget:
     shares: Mapping[str, float] = field(default_factory=dict)
     signals: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     errors: Mapping[str, Mapping[str, SignalError]] = field(default_factory=dict)
+    torque: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def explained(self) -> float:
@@ -63,6 +66,7 @@ class Budget:
             "signals": {signal: _plain(shares) for signal, shares in self.signals.items()},
             "errors": {signal: {name: one.over_noise for name, one in errors.items()} for signal, errors in self.errors.items()},
             "left": {signal: {"value": one.rms, "unit": known_sensors()[signal].unit} for signal, one in self.left.items()},
+            "torque": {"unit": "Nm", **_plain(self.torque)} if self.torque else {},
         }
 
 
@@ -100,13 +104,23 @@ def rest_notes(found: Budget, error: float, settings: Settings) -> list[str]:
     return [f"{', '.join(parts)}: more is missing, or the noise is larger than the arm file says"]
 
 
+def torque_notes(found: Budget, effects: Sequence[str]) -> list[str]:
+    """Describe how the unexplained torque on the hub changes with the constants and the effects."""
+    known = {name: torque for name, torque in found.torque.items() if math.isfinite(torque)}
+    if len(known) < len(found.torque) or not known:
+        return []
+    causes = {"nominal": "as given", "constants": "constants refitted", "final": f"with {' and '.join(effects)}"}
+    parts = [f"{torque:.2g} ({causes[name]})" for name, torque in known.items()]
+    return [f"unexplained torque on the moving hub, rms with the noise of its estimate: {' → '.join(parts)} Nm"]
+
+
 def percent(share: float) -> str:
     """Format a share with the digits that tell it from 0 and 1: "57 %", "99.4 %", "0.02 %"."""
     apart = min(abs(share), abs(1.0 - share))
     digits = max(0, math.ceil(-math.log10(apart)) - 2) if apart else 0
     if digits > MOST_DIGITS:
         return f"{100 * round(share)} %"
-    return f"{100 * share:.{digits}f} %"
+    return f"{100 * share:.{digits}f} %".replace("-", "−")
 
 
 def _worse(step: ErrorStep, settings: Settings) -> Iterator[str]:
