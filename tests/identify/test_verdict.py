@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from flexarm_env import Arm
-from flexarm_env.identify.replay.error_measure import Score, error_measure
+from flexarm_env.identify.replay.error_measure import Score, SignalError, error_measure
 from flexarm_env.identify.select.criteria import ThresholdCriteria
 from flexarm_env.identify.select.model import Model
 from flexarm_env.identify.settings import SETTINGS
@@ -79,3 +79,20 @@ def test_all_of_the_data_decide_between_rivals():
     assert rival(1.0, 1.02) < rival(1.02, 1.0)  # more samples were fitted than held out
     assert rival(1.0, 1.0) < rival(1.0, 1.0, parameters=11)
     assert rival(1.0, 1.0, parameters=11) < rival(1.01, 1.0)
+
+
+def of_signals(windows: float, **errors: float) -> Score:
+    return Score(windows, windows, None, {signal: SignalError(error, error) for signal, error in errors.items()})
+
+
+@pytest.mark.parametrize(
+    ("strain_before", "strain_after", "said"),
+    [
+        (9.0, 1.6, "partly"),  # touched, and more than the noise is left in it
+        (9.0, 1.3, "effects"),
+        (1.65, 1.6, "effects"),  # not touched
+    ],
+)
+def test_each_signal_that_effects_touch_ends_near_the_noise(strain_before, strain_after, said):
+    first = of_signals(10.0, arm_angle=11.0, strain_base=strain_before)
+    assert verdict(BEFORE, first, of_signals(1.19, arm_angle=1.0, strain_base=strain_after), ["coulomb"]) == said
