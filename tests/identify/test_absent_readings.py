@@ -192,11 +192,13 @@ def others(arm) -> list[Recording]:
 @pytest.mark.slow(minutes=1)
 @pytest.mark.parametrize("case", ["slow strain", "no angle in the first second"])
 def test_a_fit_finds_the_constants(arm, others, case):
-    found = fit(arm, [CASES[case](one) for one in others])
+    recordings = [CASES[case](one) for one in others]
+    found = fit(arm, recordings)
     truth = 0.9 * arm.value("beam.bending_stiffness")
     estimate = next(e for e in found.estimates if e.path == "beam.bending_stiffness")
     assert found.error["nominal"] > 2.0
-    assert found.error["refitted"] == pytest.approx(1.0, abs=0.04)
+    assert found.error["refitted"] < 1.1  # on what the fit had not seen, from 2.6 s
+    assert compare(found.arm, recordings).error == pytest.approx(1.0, abs=0.03)
     assert estimate.low < truth < estimate.high
     assert estimate.value == pytest.approx(truth, rel=0.05)
 
