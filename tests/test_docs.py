@@ -23,7 +23,7 @@ from documents import BLOCK, DOCUMENTS, PROJECT, README, Block, blocks_of, name_
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)#]*)(?:#([^)]*))?\)")
 #: A path from the root of the project, and one within identify, as the page on `diagnose` and its figure write it.
 PATH = re.compile(r"(?<![\w/.-])(?:flexarm_env|tests|docs|benchmarks|agents|configs)/[\w./-]*\w")
-WITHIN_IDENTIFY = re.compile(r"(?<![\w/.-])(?:replay|calibrate|select|explain)/\w+\.py|(?<=[`>])\w+\.py(?=[`,])")
+WITHIN_IDENTIFY = re.compile(r"(?<![\w/.-])(?:replay|inspect|calibrate|select|explain)/\w+\.py|(?<=[`>])\w+\.py(?=[`,])")
 TIME_LIMIT = 900
 SERVES = "flexarm lab"
 
