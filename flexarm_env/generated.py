@@ -10,11 +10,15 @@ import hashlib
 import importlib.util
 import os
 import sys
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
 from flexarm_env.files import write_whole
+
+#: Threads that need one module at once must get one: a second import would part the types of the first from their names.
+_IMPORTING = threading.RLock()
 
 
 def cache_folder() -> Path:
@@ -51,6 +55,11 @@ def generated_module(
         notice: called where nothing compiled of the module is in the cache yet.
     """
     name = f"{prefix}_{hashlib.sha256(depends_on.encode()).hexdigest()[:16]}"
+    with _IMPORTING:
+        return sys.modules[name] if name in sys.modules else _imported(name, text, notice)
+
+
+def _imported(name: str, text: Callable[[], str], notice: Callable[[], None] | None) -> ModuleType:
     path = cache_folder() / f"{name}.py"
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -62,5 +71,9 @@ def generated_module(
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
     return module

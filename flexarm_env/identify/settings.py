@@ -703,8 +703,8 @@ class Explaining:
 
 #: Origins of the numbers of `MotionFaults`.
 SOUND_RUNS = (
-    "no alarm on 236 sound recordings (66 machines of seed 5, practice, CU Boulder, EMPS) and 280 simulated ones of seven arms "
-    "with constants 30 % off and effects; no sweep recorded"
+    "no alarm on 236 sound recordings (66 machines of seed 5, practice, CU Boulder, EMPS); 1 on 280 simulated ones of seven arms "
+    "with constants 30 % off and effects, since then excluded by a bound; no sweep recorded"
 )
 FAULTY_RUNS = (
     "300 simulated recordings of seven arms with a fault at random, 298 found with their size within 2 %; no sweep recorded"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import time
 from pathlib import Path
 from typing import Any
 
@@ -134,20 +133,6 @@ def test_writing_where_one_cannot(tmp_path: Path) -> None:
         with pytest.raises(InputError, match="cannot write"):
             example().write(path)
     assert os.listdir(tmp_path) == []
-
-
-def test_reading_is_fast(tmp_path: Path) -> None:
-    rng = np.random.default_rng(0)
-    n = 5000
-    signals = {name: rng.normal(size=n) for name in ("arm_angle", "motor_speed", "strain_mid", "strain_base")}
-    example(n, signals=signals).write(tmp_path / "run.csv")
-
-    def seconds() -> float:
-        start = time.perf_counter()
-        Recording.read(tmp_path / "run.csv")
-        return time.perf_counter() - start
-
-    assert min(seconds() for _ in range(5)) < 0.05
 
 
 def test_the_largest_file_is_stated_in_bytes() -> None:
