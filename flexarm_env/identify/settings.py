@@ -830,7 +830,11 @@ class MotionFaults:
         0.4, "Signs and factors are judged where the model explains this share.", "198 recordings of seed 5: 0.45 and above"
     )
     near: float = tuned(1.05, "Gains within this factor of 1 agree.", SOUND_RUNS)
-    least_factor: float = tuned(1.25, "Gains within this factor of 1 belong to the calibration.", "0.8 to 1.25: a convention")
+    least_factor: float = tuned(
+        1.3,
+        "Gains within this factor of 1 belong to the calibration.",
+        "raised from 1.25, a convention, since a tachometer with a strong ripple has 0.797 where the motor turns little",
+    )
     plausible: float = tuned(
         2.5,
         "Gains of a sound signal are within this factor of 1 where it moves as the model does.",

@@ -18,7 +18,7 @@ def held(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
     for signal in recording.signals:
         count = repeats(Series.of(recording, signal, numbers), numbers)
         if count:
-            text = f"repeats {count:.4g} by {count:.4g}: its sensor is slower than the rows of the file"
+            text = f"repeats {count:.3g} by {count:.3g}: its sensor is slower than the rows of the file"
             found.append(fault(recording, signal, "held", count, text, f"{signal} = {{ repeats = {round(count)} }}"))
     return found
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.catalogue import CHECKS
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.mend import mended
-from flexarm_env.identify.inspect.motion import motion_faults
+from flexarm_env.identify.inspect.motion import motion_faults, moves_as_model
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.recordings.columns import UNITS
 from flexarm_env.recordings.noise import Readings, estimate_noise
@@ -96,9 +96,30 @@ def inspect_recordings(arm: Arm, recordings: Sequence[Recording], settings: Sett
         found, left = reading_faults(arm, recording, settings)
         faults += found
         sound.append(left)
-    faults += motion_faults(arm, sound, settings)
+    faults = with_motion_faults(arm, recordings, sound, faults, settings)
     facts = tuple(_facts(r, signal) for r in recordings for signal in r.signals)
     return Inspection(tuple(faults), facts, tuple(sound), time.perf_counter() - began)
+
+
+def with_motion_faults(
+    arm: Arm, recordings: Sequence[Recording], sound: Sequence[Recording], faults: list[Fault], settings: Settings
+) -> list[Fault]:
+    """Add the faults that the motion shows. Commands beyond the limit are in another unit where that explains the motion.
+
+    Args:
+        arm: the model.
+        recordings: as read.
+        sound: the same with the faults of their readings mended.
+        faults: of their readings.
+        settings: numbers of the method.
+    """
+    if any(one.kind == "limit" for one in faults) and not moves_as_model(arm, sound, settings):
+        others = [one for one in faults if one.kind != "limit"]
+        as_read = [replace(left, command=one.command[: len(left)]) for left, one in zip(sound, recordings, strict=True)]
+        found = motion_faults(arm, as_read, settings)
+        if any(one.kind == "factor" and one.signal == arm.input for one in found):
+            return others + found
+    return faults + motion_faults(arm, sound, settings)
 
 
 def reading_faults(arm: Arm, recording: Recording, settings: Settings = SETTINGS) -> tuple[list[Fault], Recording]:

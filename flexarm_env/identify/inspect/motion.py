@@ -9,6 +9,7 @@ from flexarm_env.identify.inspect.clock import late_signals
 from flexarm_env.identify.inspect.evidence import Evidence, gather
 from flexarm_env.identify.inspect.factor import factors
 from flexarm_env.identify.inspect.fault import Fault
+from flexarm_env.identify.inspect.in_common import in_common
 from flexarm_env.identify.inspect.sign import signs
 from flexarm_env.identify.inspect.swap import exchanged_signals
 from flexarm_env.identify.settings import SETTINGS, Settings
@@ -23,11 +24,11 @@ def motion_faults(arm: Arm, recordings: Sequence[Recording], settings: Settings 
 
     One free run of the model is compared with every signal in windows of a second, each with an offset and a drift of its own:
     so wrong constants and missing effects change gains and shapes a little, and a fault much. Angle and speed are also compared
-    with each other, without a model.
+    with each other, without a model. What most recordings show, all have.
 
     Args:
         arm: the model.
-        recordings: of the machine; each is judged alone.
+        recordings: of the machine.
         settings: numbers of the method.
 
     Returns:
@@ -45,10 +46,13 @@ def motion_faults(arm: Arm, recordings: Sequence[Recording], settings: Settings 
         >>> [fault.signal for fault in motion_faults(arm, [against])]
         ['strain_base']
     """
-    found = []
-    for recording in recordings:
-        if not set(recording.signals) & set(arm.signals):  # the readings of all were at fault
-            continue
-        evidence = gather(arm, recording, settings)
-        found += next((faults for kind in KINDS if (faults := kind(evidence))), [])
-    return found
+    with_signals = [one for one in recordings if set(one.signals) & set(arm.signals)]  # else the readings of all were at fault
+    evidence = [gather(arm, recording, settings) for recording in with_signals]
+    found: list[list[Fault]] = [next((faults for kind in KINDS if (faults := kind(one))), []) for one in evidence]
+    return in_common(evidence, found)
+
+
+def moves_as_model(arm: Arm, recordings: Sequence[Recording], settings: Settings = SETTINGS) -> bool:
+    """Whether the model moves as the machine does in every recording."""
+    with_signals = [one for one in recordings if set(one.signals) & set(arm.signals)]
+    return all(gather(arm, recording, settings).model_holds for recording in with_signals)

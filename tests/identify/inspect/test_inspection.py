@@ -140,6 +140,12 @@ def test_commands_beyond_the_limit_are_named(thesis, square):
     assert inspect_recordings(cut, [recording]).faults == ()
 
 
+def test_commands_in_another_unit_are_not_beyond_the_limit(thesis, square):
+    fault = only(thesis, replace(square, command=1000.0 * square.command))
+    assert (fault.kind, fault.signal, fault.value) == ("factor", "current", pytest.approx(1000.0, rel=0.02))
+    assert tomllib.loads(fault.hint) == {"current": {"unit": "mA"}}
+
+
 @pytest.mark.parametrize("pause", [0.002, 0.5])
 def test_two_runs_in_one_file(thesis, pulse, square, pause):
     start = pulse.duration + pause

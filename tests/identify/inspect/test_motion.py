@@ -211,3 +211,33 @@ def test_an_angle_that_is_a_little_late_is_found(lag):
     fault = found_in("thesis", late(sound(experiment="pulse"), lag, ("arm_angle",)))
     assert (fault.kind, fault.signal) == ("clock", "arm_angle")
     assert fault.value == pytest.approx(lag, rel=CLOSE)
+
+
+def three_runs() -> list[Recording]:
+    return [replace(sound(experiment=name), name=name) for name in ("square", "pulse", "sweep")]
+
+
+def test_a_unit_is_that_of_all_recordings():
+    """The third run hardly moves, so that it shows no factor by itself."""
+    square, pulse, _ = three_runs()
+    draws = np.random.default_rng(0)
+    noise = {name: draws.normal(0.0, 0.01, len(square)) for name in square.signals}
+    still = Recording.from_arrays("still", square.time, "current", 0.0 * square.command, noise)
+    assert motion_faults(Arm.load("thesis"), [still]) == []
+    slow = [with_signal(one, "motor_speed", lambda speed: speed / math.tau) for one in (square, pulse, still)]
+    found = motion_faults(Arm.load("thesis"), slow)
+    assert [one.recording for one in found] == ["square", "pulse", "still"]
+    assert {(one.kind, one.signal) for one in found} == {("factor", "motor_speed")}
+    assert all(one.value == pytest.approx(1.0 / math.tau, rel=CLOSE) for one in found)
+
+
+def test_a_small_factor_in_one_of_three_recordings_is_that_of_an_effect():
+    """A ripple of the tachometer once per turn looks like a gain where the motor turns little."""
+    square, pulse, sweep = three_runs()
+
+    def ripple(speed):
+        return speed * (1.0 - 0.3 * np.cos(1.5 * sweep.signals["arm_angle"]))
+
+    rippled = with_signal(sweep, "motor_speed", ripple)
+    assert [one.kind for one in motion_faults(Arm.load("thesis"), [rippled])] == ["factor"]
+    assert motion_faults(Arm.load("thesis"), [square, pulse, rippled]) == []

@@ -1,0 +1,54 @@
+"""Faults that recordings have in common: a unit, a sign or a clock is that of a logger, not of one run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+from flexarm_env.identify.inspect.evidence import Evidence
+from flexarm_env.identify.inspect.fault import Fault
+
+Key = tuple[str, str, str]
+
+
+def in_common(evidence: Sequence[Evidence], found: Sequence[Sequence[Fault]]) -> list[Fault]:
+    """Give all recordings the faults that most of them show, at the median size, and drop small factors that few show.
+
+    Args:
+        evidence: on each recording.
+        found: the faults of each, judged alone.
+    """
+    most = [key for key in _keys(found) if 2 * len(_with_key(found, key)) > len(found)]
+    if most:
+        middle = [_middle(_with_key(found, key)) for key in most]
+        return [replace(one, recording=e.recording.name, source=e.recording.source) for e in evidence for one in middle]
+    alone = len(found) == 1
+    pairs = zip(evidence, found, strict=True)
+    return [one for e, faults in pairs for one in faults if alone or _is_certain(e, one)]
+
+
+def _key(fault: Fault) -> Key:
+    return fault.kind, fault.signal, fault.other
+
+
+def _keys(found: Sequence[Sequence[Fault]]) -> list[Key]:
+    return list(dict.fromkeys(_key(one) for faults in found for one in faults))
+
+
+def _with_key(found: Sequence[Sequence[Fault]], key: Key) -> list[Fault]:
+    return [one for faults in found for one in faults if _key(one) == key]
+
+
+def _middle(faults: Sequence[Fault]) -> Fault:
+    """Choose the fault of median size."""
+    ordered = sorted(faults, key=lambda one: one.value or 0.0)
+    return ordered[(len(ordered) - 1) // 2]
+
+
+def _is_certain(evidence: Evidence, fault: Fault) -> bool:
+    """Whether one recording shows a fault by itself: any but a factor that a missing effect could make in it."""
+    if fault.kind != "factor" or not fault.value or fault.signal not in evidence.signals:
+        return True
+    far = abs(math.log(fault.value)) > math.log(evidence.numbers.plausible)
+    return far or evidence.run.leaves_noise(fault.signal, evidence.at_once[fault.signal])
