@@ -11,6 +11,7 @@ from cli_stand_ins import GAP, KPHI, Call, fake_compare, fake_diagnosis
 import flexarm_env
 from flexarm_env.arm import Arm
 from flexarm_env.experiments.simulate import simulate
+from flexarm_env.identify.inspect.inspection import Inspection
 from flexarm_env.identify.results import Addition, Fit
 
 
@@ -36,7 +37,9 @@ def runs(arm, tmp_path_factory) -> Path:
 @pytest.fixture
 def identify(monkeypatch) -> SimpleNamespace:
     """Quick stand-ins for the identification, which record what they were called with."""
-    calls = SimpleNamespace(log=[], verdict="effects", effects=("backlash",), final=1.02)
+    calls = SimpleNamespace(log=[], verdict="effects", effects=("backlash",), final=1.02, inspects=False)
+
+    inspected = flexarm_env.inspect_recordings
 
     def compare(arm, recordings, progress=None, rate=None):
         calls.log.append(("compare", arm, recordings))
@@ -56,6 +59,9 @@ def identify(monkeypatch) -> SimpleNamespace:
         error = {"nominal": 4.1, "refitted": 3.7}
         return Fit(arm.with_values({"drive.torque_constant": 0.3312}), [KPHI], error, error, 1.0)
 
-    for function in (compare, diagnose, add, fit):
+    def inspect_recordings(arm, recordings):
+        return inspected(arm, recordings) if calls.inspects else Inspection((), (), tuple(recordings), 0.0)
+
+    for function in (compare, diagnose, add, fit, inspect_recordings):
         monkeypatch.setitem(vars(flexarm_env), function.__name__, function)
     return calls

@@ -72,6 +72,7 @@ def test_compare_goes_on_with_a_note(flexarm, clipped, tmp_path):
 
 
 def test_fit_and_add_go_on_with_a_note_on_stderr(flexarm, identify, clipped):
+    identify.inspects = True
     for command in (["fit"], ["add", "backlash"]):
         assert flexarm(*command, clipped) == 0
         assert "Note: clipped: strain_base stands at its extreme" in flexarm.err

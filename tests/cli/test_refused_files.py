@@ -22,7 +22,7 @@ from cli_stand_ins import GOOD_ARM, HEADER, ROWS
         (HEADER + "0,1,0\n", "two"),
         (HEADER + "0,1,0\n0.1,oops,0.1\n", "row 3"),
         (HEADER + "0,1,0\n0.1,,0.1\n", "row 3"),
-        (HEADER + "0,1,0\n0.1,1,NaN\n", "row 3"),
+        (HEADER + "0,1,0\n0.1,NaN,0\n", "row 3"),
         (HEADER + "0,1,0\n0.1,1,inf\n", "row 3"),
         (HEADER + "0,1,0\n0.2,1,0\n0.1,1,0\n", "back"),
         (HEADER + "0,1,0\n0,1,0\n", "repeats"),
