@@ -858,6 +858,11 @@ class MotionFaults:
     polishing_step: float = tuned(0.008, "First step of its logarithm from there to the best one.", FAULTY_RUNS)
     signal_steps: int = tuned(3, "Steps in which a factor of an only signal is refined.", FAULTY_RUNS)
     known_factor: float = tuned(0.02, "Logarithm of the ratio to a known number within which a factor is named by it.", "2 %")
+    likely_factor: float = tuned(
+        0.1,
+        "The same where constants of the model change the factor, too.",
+        "machines with constants 4 % off on either side: the factor of an only signal is then up to 7 % off",
+    )
 
 
 @dataclass(frozen=True)

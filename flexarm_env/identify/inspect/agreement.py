@@ -28,6 +28,11 @@ class Agreement:
     share: float
     power: float = 0.0
 
+    @property
+    def share_at_one(self) -> float:
+        """Share of the measured variance that the model explains with a gain of 1."""
+        return self.share / self.gain * (2.0 - 1.0 / self.gain) if self.gain > 0.0 else 0.0
+
     def is_within(self, factor: float) -> bool:
         """Whether the gain is 1 within a factor."""
         return 1.0 / factor < self.gain < factor

@@ -33,7 +33,7 @@ def _of_signal_or_command(evidence: Evidence, factor: float, mended: Table) -> l
     """Find the factor of the only signal, or of the command if that explains more."""
     command, (signal,) = evidence.recording.input_kind, evidence.signals
     gain, alone = _refined(evidence, signal)
-    if factor and mended[signal].share > alone.share:
+    if factor and mended[signal].share_at_one > alone.share_at_one:
         return [factor_fault(evidence, command, factor, signal)] if _is_certain(evidence, factor, mended) else []
     return [factor_fault(evidence, signal, gain, command)] if _is_certain(evidence, gain, {signal: alone}) else []
 
@@ -107,7 +107,7 @@ def _polished(evidence: Evidence, factor: float) -> float:
 
 
 def _explained(evidence: Evidence, factor: float) -> float:
-    return sum(found.share for found in evidence.replayer.free_run(factor).at_once().values())
+    return sum(found.share_at_one for found in evidence.replayer.free_run(factor).at_once().values())
 
 
 def _middle_gain(run: FreeRun) -> float:

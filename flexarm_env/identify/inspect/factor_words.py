@@ -34,9 +34,13 @@ def factor_fault(evidence: Evidence, signal: str, value: float, rival: str = "",
         roughly: whether the model is wrong elsewhere, too, so that the value is no more than an estimate.
     """
     recording = evidence.recording
+    # The constants of the model, too, change the factor of a command, of an only signal, or beside a wrong model.
+    numbers = evidence.numbers
+    close = numbers.likely_factor if roughly or rival or signal in INPUTS else numbers.known_factor
+    unit, words, number = _known(evidence, signal, value, close)
     size = f"about {_number(value)}" if roughly else _number(value)
-    unit, words, number = ("", "", value) if roughly else _known(evidence, signal, value)
-    size += f" = {words}" if words else ""
+    if words:
+        size += f" = {words}" if abs(math.log(value / number)) < numbers.known_factor else f", probably {words}"
     also = f" (or {rival} is {_number(1.0 / value)} of it: with one signal alone the two look alike)" if rival else ""
     entry = f'unit = "{unit}"' if unit else f"scale = {1.0 / number:.4g}"
     gain = ""
@@ -47,7 +51,7 @@ def factor_fault(evidence: Evidence, signal: str, value: float, rival: str = "",
         source=recording.source,
         signal=signal,
         kind="factor",
-        value=value,
+        value=number,
         unit="",
         message=f"{signal} is {size} of the model's{also}",
         hint=f"{signal} = {{ {entry} }}{gain}",
@@ -61,9 +65,8 @@ def _number(value: float) -> str:
     return f"{float(rounded):.0f}" if abs(value) >= LARGE else rounded
 
 
-def _known(evidence: Evidence, signal: str, value: float) -> tuple[str, str, float]:
+def _known(evidence: Evidence, signal: str, value: float, close: float) -> tuple[str, str, float]:
     """Look up the unit that a factor stands for and the known number that it equals, in words and as a number, or itself."""
-    close = evidence.numbers.known_factor
     unit = INPUTS.get(signal) or evidence.arm.sensor(signal).unit
     for other, words in USUAL_UNITS.get(unit, {}).items():
         if abs(math.log(value * unit_factor(other, unit))) < close:
