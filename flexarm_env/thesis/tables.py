@@ -26,7 +26,7 @@ TANGENT, AT_REST = 0.05, 0.1
 def experiment_1() -> tuple[Arm, list[Recording]]:
     """Build the model E = kφ ω, and experiment 1 as a staircase of E [V], which drives a motor without friction."""
     motor = arms.motor_alone()
-    drive = {**motor.constants["drive"], "resistance": RESISTANCE}
+    drive = {**motor.constants["drive"], "resistance": RESISTANCE, "limit": 0.0}  # which is one of the current
     arm = replace(motor, input="voltage", effects={}, constants={**motor.constants, "drive": drive})
     speed, emf = back_emf()
     return _with_tachometer(arm, EMF_SCATTER, "motor_inertia"), [_staircase("experiment 1", "voltage", emf, speed, EMF_HOLD)]
