@@ -33,8 +33,9 @@ def _hub_out_of_step(evidence: Evidence) -> list[Fault]:
 def _is_late(evidence: Evidence, signal: str) -> bool:
     """Whether a signal is like the model's at a lag, and much less so without."""
     numbers, late = evidence.numbers, evidence.late[signal]
-    is_like = late.share > numbers.similar and late.is_within(numbers.plausible)
-    least = numbers.least_lag if evidence.run.leaves_noise(signal, late) else numbers.sure_lag
+    exact = evidence.run.leaves_noise(signal, late)
+    least, share = (numbers.least_lag, numbers.similar) if exact else (numbers.sure_lag, numbers.alike)
+    is_like = late.share > share and late.is_within(numbers.plausible)
     return is_like and abs(late.lag) > least and evidence.is_like_model_later(signal)
 
 

@@ -47,7 +47,10 @@ def _middle(faults: Sequence[Fault]) -> Fault:
 
 
 def _is_certain(evidence: Evidence, fault: Fault) -> bool:
-    """Whether one recording shows a fault by itself: any but a factor that a missing effect could make in it."""
+    """Whether one recording shows a fault by itself: any but a factor or a lag that a missing effect could make in it."""
+    if fault.kind == "clock":
+        late = [fault.signal] if fault.signal else evidence.signals
+        return all(evidence.run.leaves_noise(signal, evidence.late[signal]) for signal in late)
     if fault.kind != "factor" or not fault.value or fault.signal not in evidence.signals:
         return True
     far = abs(math.log(fault.value)) > math.log(evidence.numbers.plausible)

@@ -241,3 +241,14 @@ def test_a_small_factor_in_one_of_three_recordings_is_that_of_an_effect():
     rippled = with_signal(sweep, "motor_speed", ripple)
     assert [one.kind for one in motion_faults(Arm.load("thesis"), [rippled])] == ["factor"]
     assert motion_faults(Arm.load("thesis"), [square, pulse, rippled]) == []
+
+
+def test_a_spring_that_the_model_lacks_is_no_clock():
+    """A cable turns the phase of the motion, early against the model, and most where the commands are slow."""
+    arm = Arm.load("thesis").with_effect("viscous", coefficient=0.1).without_effect("coulomb").without_effect("stiction")
+    for stiffness in (0.1, 0.3, 1.0):
+        sprung = arm.with_effect("cable_stiffness", stiffness=stiffness, rest_angle=0.2)
+        runs = [simulate(sprung, name, duration=6.0, seed=3, name=name) for name in ("square", "pulse", "sweep")]
+        angle = [replace(run, signals={"arm_angle": run.signals["arm_angle"]}) for run in runs]
+        for one in (*runs, *angle):
+            assert motion_faults(arm, [one]) == []
