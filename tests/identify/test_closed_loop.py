@@ -12,11 +12,8 @@ from flexarm_env import Arm, Recording, compare, simulate
 from flexarm_env.control.law import ControlLaw, Feedback
 from flexarm_env.experiments.rig import SpeedEstimate
 from flexarm_env.identify.replay.dataset import prepare
-from flexarm_env.identify.replay.error_measure import Score, score
+from flexarm_env.identify.replay.error_measure import score
 from flexarm_env.identify.replay.loop import Loop, compare_commands, law_commands
-from flexarm_env.identify.select.criteria import ThresholdCriteria
-from flexarm_env.identify.select.model import Model
-from flexarm_env.identify.settings import SETTINGS
 from flexarm_env.pictures.page import Findings, page
 from flexarm_env.plant.plant import NO_GAINS, NO_INTERVALS, NOT_MEASURED
 from flexarm_env.terminal import plain_data, tables
@@ -200,22 +197,6 @@ def test_the_law_of_a_column_map_goes_before_that_of_the_arm(tmp_path):
     assert read.controller == PD
     assert prepare(wrong, [read])[1].runs[0].loop.law_error < 1e-12
     assert prepare(wrong, [run])[1].runs[0].loop is None
-
-
-def test_the_closed_loop_takes_the_free_run_s_place():
-    """A drift of the free run neither hides nor makes an improvement."""
-    drifts, holds = Score(2.0, 1e4, 3.0), Score(2.0, 2e4, 1.2)
-    assert holds.is_better_than(drifts)
-    assert replace(drifts, closed_loop=None).is_better_than(replace(holds, closed_loop=None))
-    assert holds.whole_run == 1.2
-    assert replace(holds, closed_loop=None).whole_run == 2e4
-    criteria = ThresholdCriteria(drifts, Score(5.0, 1e4, 8.0), True, SETTINGS)
-    better = Model((), None, Score(1.1, 3e4, 1.3), Score(1.1, 3e4, 1.3))
-    assert criteria.explains(better)
-    assert not criteria.explains(replace(better, score=Score(1.1, 3e4)))
-    far_off = [Score(4.0, 1e4, 9.0)]
-    assert criteria.measure(far_off)(Score(4.0, 1e4, 9.0)) == pytest.approx((15.0 * 80.0) ** 0.5)
-    assert criteria.measure(far_off)(Score(4.0, 9.0)) == pytest.approx(80.0)
 
 
 def test_scores_hold_both_only_where_the_loop_is_known():

@@ -63,36 +63,23 @@ class Score:
     signals: Mapping[str, SignalError] = field(default_factory=dict, hash=False)
 
     @property
-    def whole_run(self) -> float:
-        """Error of whole recordings: in closed loop where it is known, since an axis that nothing holds drifts in a free run."""
-        return self.free_run if self.closed_loop is None else self.closed_loop
-
-    @property
     def excess(self) -> float:
         """Excess of the error in windows, as a variance."""
         return excess(self.windows)
 
     @property
-    def whole_run_excess(self) -> float:
-        """Excess of the error of whole recordings, as a variance."""
-        return excess(self.whole_run)
+    def free_run_excess(self) -> float:
+        """Excess of the error of the free run, as a variance."""
+        return excess(self.free_run)
 
     @property
     def mean_excess(self) -> float:
         """Geometric mean of both."""
-        return math.sqrt(self.excess * self.whole_run_excess)
-
-    @property
-    def far_off_excess(self) -> float:
-        """Excess by which models far from the noise are compared.
-
-        A free run adds up the errors of a model and decides alone. A controller hides them, so windows decide with the loop.
-        """
-        return self.whole_run_excess if self.closed_loop is None else self.mean_excess
+        return math.sqrt(self.excess * self.free_run_excess)
 
     def is_better_than(self, other: Score) -> bool:
         """Whether the product of both errors is smaller."""
-        return self.windows * self.whole_run < other.windows * other.whole_run
+        return self.windows * self.free_run < other.windows * other.free_run
 
 
 class ErrorMeasure(Protocol):

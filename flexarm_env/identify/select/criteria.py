@@ -98,7 +98,7 @@ class ThresholdCriteria:
         """
         best = min(s.windows for s in scores)
         if self.judges_whole_run and best > self.settings.errors.far_off:
-            return lambda s: s.far_off_excess
+            return lambda s: s.free_run_excess
         if self.judges_whole_run and best > self.settings.errors.close:
             return lambda s: s.mean_excess
         return lambda s: s.excess
@@ -122,14 +122,14 @@ class ThresholdCriteria:
         share = shares.least_total_gain if score.windows > errors.far_off else shares.least_total_gain_near
         pairs = [(self.refitted.windows, score.windows, errors.explained, share)]
         if self.judges_whole_run:
-            pairs.append((self.refitted.whole_run, score.whole_run, errors.free_run_explained, shares.least_total_gain))
+            pairs.append((self.refitted.free_run, score.free_run, errors.free_run_explained, shares.least_total_gain))
         return all(new <= enough or excess(new) <= (1.0 - least) * excess(old) for old, new, enough, least in pairs)
 
     def explains_most(self, score: Score) -> bool:
         """Whether effects remove most of the excess, in windows and in whole runs alike, though more than the noise is left."""
         pairs = [(self.refitted.excess, score.excess)]
         if self.judges_whole_run:
-            pairs.append((self.refitted.whole_run_excess, score.whole_run_excess))
+            pairs.append((self.refitted.free_run_excess, score.free_run_excess))
         return all(left <= (1.0 - self.settings.selecting.least_total_gain) * before for before, left in pairs)
 
     def leaves_only_noise(self, score: Score) -> bool:
@@ -158,7 +158,7 @@ class ThresholdCriteria:
         """
         share = 1.0 - self.settings.selecting.least_gain_far_off
         new, old = found.score, without.score
-        pairs = ((new.excess, old.excess), (new.whole_run_excess, old.whole_run_excess))
+        pairs = ((new.excess, old.excess), (new.free_run_excess, old.free_run_excess))
         return new.windows > self.settings.errors.far_off and any(left > share * before for left, before in pairs)
 
     def trusts_constants(self) -> bool:
