@@ -42,7 +42,6 @@ def test_a_diagnosis_names_the_fault_and_no_effect(flexarm, clipped, tmp_path):
     expected = {"file": str(clipped), "signal": "strain_base", "fault": "rail", "value": 1.5, "hint": MEND}
     assert expected.items() <= fault.items()
     assert set(found["error"].values()) == {None}
-    assert found["seconds"] < 2
     assert "strain_base stands at its extreme of ±1.5 V" in flexarm.out
     assert MEND in flexarm.out
     assert not (tmp_path / "arm.toml").exists()
