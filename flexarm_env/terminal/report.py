@@ -53,12 +53,12 @@ def report(
     after, curves, without = None, [], {}
     if diagnosis is not None and not diagnosis.recordings:
         report_progress(0.1, "replaying the corrected arm")
-        after = flexarm_env.compare(diagnosis.arm, recordings)
+        after = flexarm_env.compare(diagnosis.arm, recordings, rate=before.rate)  # the pages draw all arms at the same samples
         report_progress(0.4, "drawing the effects")
         curves = _curves(diagnosis, recordings)
         drawn = {curve.effect for curve in curves}
         arms = {e: after.arm.without_effect(e) for e in diagnosis.effects if e not in drawn and e in after.arm.effects}
-        without = {effect: flexarm_env.compare(arm, recordings) for effect, arm in arms.items()}
+        without = {effect: flexarm_env.compare(arm, recordings, rate=before.rate) for effect, arm in arms.items()}
     report_progress(0.7, "writing the page")
     return page(Findings(before, recordings, after, diagnosis, curves, without, provenance))
 

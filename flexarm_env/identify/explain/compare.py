@@ -70,7 +70,9 @@ def compare(
     noise = {s: float(n) for s, n in zip(dataset.signals, dataset.noise, strict=True)}
     loop_rows = list(_loop_rows(replays, dataset, noise))
     closed_loop = _closed_loop_error(replays, noise) if loop_rows else None
-    return Comparison(arm, rows, replays, noise, whole.error, whole.free_run, notes, closed_loop, loop_rows)
+    thinned = round(dataset.interval / float(np.median([r.sample_time for r in recordings]))) > 1
+    kept = 1.0 / dataset.interval if thinned else 0.0
+    return Comparison(arm, rows, replays, noise, whole.error, whole.free_run, notes, closed_loop, loop_rows, kept)
 
 
 def regimes(run: Run, dataset: Dataset) -> NDArray[np.int64]:

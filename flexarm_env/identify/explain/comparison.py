@@ -93,6 +93,7 @@ class Comparison(Shown):
         notes: findings of the check of the recordings, a line each (gaps, saturation, poor excitation, the control law).
         closed_loop: the same as free_run, in closed loop where the recordings were made in a known one; None where none was.
         loop_rows: errors in closed loop by recording and quantity.
+        rate: samples per second that were kept [Hz], of which the replays are; 0 for all.
     """
 
     arm: Arm
@@ -104,3 +105,4 @@ class Comparison(Shown):
     notes: list[str] = field(default_factory=list)
     closed_loop: float | None = None
     loop_rows: list[LoopRow] = field(default_factory=list)
+    rate: float = 0.0
