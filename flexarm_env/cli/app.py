@@ -79,7 +79,7 @@ def compare(
     from flexarm_env.terminal import identification, plain_data, tables
     from flexarm_env.terminal.provenance import provenance
 
-    result = identification.compare(model, runs, rate)
+    result = identification.compare_and_inspect(model, runs, rate)
     hand_out("compare", arm, runs, None, json, plain_data.of_comparison(result), tables.comparison(result))
     if report is not None:
         made = given.command_line("compare", rate=rate) | provenance("compare", arm, runs, None)

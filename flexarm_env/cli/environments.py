@@ -10,9 +10,10 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from flexarm_env.arm import Arm
-from flexarm_env.env.setup import COMMAND_UNIT, Setup
+from flexarm_env.env.setup import Setup
 from flexarm_env.env.variation import Variation, find_variation
 from flexarm_env.errors import InputError
+from flexarm_env.parameters import INPUTS
 from flexarm_env.pictures import words
 from flexarm_env.registration import IDS, VARIANTS
 from flexarm_env.tasks import CONTROL_RATE
@@ -56,7 +57,7 @@ def _facts(id: str, arm: Arm) -> dict[str, Any]:
         "arm": arm.name,
         "drawn": _ranges(drawn, variation),
         "observation": [*arm.signals, "target"],
-        "action": {"quantity": arm.input, "limit": setup.arm.constants["drive"]["limit"], "unit": COMMAND_UNIT[arm.input]},
+        "action": {"quantity": arm.input, "limit": setup.arm.constants["drive"]["limit"], "unit": INPUTS[arm.input]},
         "rate": CONTROL_RATE,
         "seconds": task.duration,
         "steps": setup.samples,

@@ -17,6 +17,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.env import layout as at
 from flexarm_env.env.variation import Disturbance, Variation
 from flexarm_env.errors import InputError
+from flexarm_env.parameters import INPUTS
 from flexarm_env.plant.plant import Plant
 from flexarm_env.sensors import Sensor, known_sensors
 from flexarm_env.sensors.arm_angle import ArmAngle
@@ -26,7 +27,6 @@ from flexarm_env.thesis_drive import GEAR_RATIO
 
 Floats = NDArray[np.float64]
 MOST_RATE = 10_000.0
-COMMAND_UNIT = {"current": "A", "voltage": "V"}
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Setup:
         if not self.arm.constants["drive"]["limit"] > 0.0:
             raise InputError(
                 f"arm '{self.arm.name}' states no drive.limit, of which an action is a share; give an arm of your own that "
-                f'states it, as arm.with_values({{"drive.limit": 5.0}}) with its largest command [{COMMAND_UNIT[self.arm.input]}]'
+                f'states it, as arm.with_values({{"drive.limit": 5.0}}) with its largest command [{INPUTS[self.arm.input]}]'
             )
         if not self.arm.sensors:
             raise InputError(f"arm '{self.arm.name}' has no sensors; an environment needs one at least")

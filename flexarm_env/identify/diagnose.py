@@ -76,7 +76,7 @@ def diagnose(
         calibrator, calibration = calibrator.choose_hold_out()  # all that follows is judged on its dataset
     base = judge((), calibration, calibrator.dataset)
     nominal_score = calibrator.score(nominal)
-    rules = criteria(nominal_score, base.score, error_measure(nominal).judges_whole_run, settings)
+    rules = criteria(nominal_score, base.score, error_measure(nominal).judges_free_run, settings)
 
     trace = Search(calibrator, rules).run(base, searching)
 

@@ -21,8 +21,6 @@ from flexarm_env.recordings.recording import Recording
 
 #: Faulty samples that a figure marks, at most.
 MOST_MARKS = 400
-#: Kinds of fault whose value is the time at which the recording breaks.
-BREAKS = ("glued", "restart")
 _MARK: dict[str, Any] = {"symbol": "x", "size": 7, "color": BEFORE}
 
 
@@ -34,7 +32,7 @@ def signals(recording: Recording, faults: Sequence[Fault]) -> go.Figure:
     rows = [recording.input_kind, *words.signals_of(list(recording.signals))]
     named = False
     for fault in own:
-        if fault.kind in BREAKS and fault.value is not None:
+        if fault.kind == "glued" and fault.value is not None:
             figure.add_vline(x=fault.value, line={"color": BEFORE, "width": 1.5, "dash": "dash"})
         elif fault.signal in rows and fault.rows:
             marks = np.array(fault.rows)[:: -(-len(fault.rows) // MOST_MARKS)]
@@ -84,6 +82,7 @@ def effects(found: Sequence[EffectExcitation]) -> go.Figure:
 
 def _ladder(figure: go.Figure, rows: int, title: str) -> go.Figure:
     """Lay out one row per name over a logarithmic axis."""
-    figure.update_xaxes(type="log", title_text=title, dtick=1, exponentformat="none")
+    marks = [mark * 10.0**decade for decade in range(-6, 7) for mark in (1, 2, 5)]  # of decades alone a narrow axis has none
+    figure.update_xaxes(type="log", title_text=title, tickvals=marks, ticktext=[f"{mark:g}" for mark in marks])
     figure.update_yaxes(autorange="reversed")
     return with_layout(figure, 70 + 22 * max(rows, 2))

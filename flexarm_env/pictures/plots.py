@@ -33,7 +33,7 @@ def with_layout(figure: go.Figure, height: int, hover: str = "closest", **layout
     )
     axes = {"automargin": True, "gridcolor": GRID, "zerolinecolor": "#bbbbbb", "title_standoff": 6}
     figure.update_xaxes(**axes)
-    figure.update_yaxes(**axes)
+    figure.update_yaxes(ticklabelstandoff=4, **axes)
     return figure
 
 

@@ -125,11 +125,6 @@ def steps_of(error: Mapping[str, float], effects: Sequence[str] = ()) -> list[tu
     return steps
 
 
-def arrows(error: Mapping[str, float], effects: Sequence[str] = ()) -> str:
-    """Format the error after each step: "4.10 → 3.70 → 1.02"."""
-    return " → ".join(number(value) for _, value in steps_of(error, effects))
-
-
 def change(error: Mapping[str, float], effects: Sequence[str] = ()) -> str:
     """Write how the error changes from step to step, with the verb that fits: "falls 4.10 → 3.70 → 1.02 × the noise"."""
     values = [value for _, value in steps_of(error, effects)]

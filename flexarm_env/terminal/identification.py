@@ -27,10 +27,15 @@ def inspect(arm: Arm, recordings: Sequence[Recording]) -> Overview:
 
 
 def compare(arm: Arm, recordings: Sequence[Recording], rate: float | None = None) -> Comparison:
-    """Compare an arm with its recordings; faults of these are among the notes."""
+    """Compare an arm with its recordings."""
     with progress("comparing") as bar:
-        found = flexarm_env.compare(arm, list(recordings), progress=bar, rate=rate)
-        return replace(found, notes=[*faults(arm, recordings), *found.notes])
+        return flexarm_env.compare(arm, list(recordings), progress=bar, rate=rate)
+
+
+def compare_and_inspect(arm: Arm, recordings: Sequence[Recording], rate: float | None = None) -> Comparison:
+    """Compare an arm with its recordings, with the faults of these among the notes."""
+    found = compare(arm, recordings, rate)
+    return replace(found, notes=[*faults(arm, recordings), *found.notes])
 
 
 def faults(arm: Arm, recordings: Sequence[Recording]) -> list[str]:

@@ -35,8 +35,8 @@ def begun(nominal: Arm, recordings: list[Recording]) -> tuple[Search, Trace]:
     calibrator = Calibrator(*prepare(nominal, recordings))
     base = judge((), calibrator.calibrate_constants(), calibrator.dataset)
     before = calibrator.score(calibrator.nominal)
-    judges_whole_run = error_measure(calibrator.nominal).judges_whole_run
-    criteria = ThresholdCriteria(before, base.score, judges_whole_run, calibrator.settings)
+    judges_free_run = error_measure(calibrator.nominal).judges_free_run
+    criteria = ThresholdCriteria(before, base.score, judges_free_run, calibrator.settings)
     return Search(calibrator, criteria), Trace.begin(base)
 
 

@@ -15,8 +15,8 @@ from flexarm_env.identify.settings import SETTINGS
 
 
 def verdict(before: Score, first: Score, best: Score, accepted: list[str], arm: str = "thesis") -> str:
-    judges_whole_run = error_measure(Arm.load(arm)).judges_whole_run
-    return ThresholdCriteria(before, first, judges_whole_run, SETTINGS).verdict(accepted, Model((), None, best, best))
+    judges_free_run = error_measure(Arm.load(arm)).judges_free_run
+    return ThresholdCriteria(before, first, judges_free_run, SETTINGS).verdict(accepted, Model((), None, best, best))
 
 
 BEFORE, FIRST = Score(20.0, 60.0), Score(3.0, 12.0)

@@ -36,7 +36,8 @@ def test_steps_name_each_effect_once():
     assert words.steps_of(dropped, ["backlash"])[2:] == [("+ backlash", 1.15)]
     free = words.steps_of({"nominal": 4.0, "refitted": 3.0, "final": 1.5}, ["backlash", "stribeck"])
     assert free[2:] == [("+ backlash + stribeck", 1.5)]
-    assert words.arrows({"nominal": 4.0, "refitted": 3.0, "final": 1.0}, ["backlash"]) == "4.00 → 3.00 → 1.00"
+    fell = words.change({"nominal": 4.0, "refitted": 3.0, "final": 1.0}, ["backlash"])
+    assert fell == "falls 4.00 → 3.00 → 1.00 × the noise"
 
 
 def test_sparklines_and_bars_go_from_nothing_to_the_largest():

@@ -122,13 +122,13 @@ class Objective:
 
     def _errors(self, arm: Arm, runs: Sequence[Run]) -> list[Floats]:
         dataset, plants = self.dataset, self.dataset.plants(arm)
-        judges_whole_run = error_measure(arm).judges_whole_run
+        judges_free_run = error_measure(arm).judges_free_run
         errors = []
         for run in runs:
             plant = plants[run.payload]
             gains = self.observers.gains(arm, plant, run, dataset, self.torque_noise) if self.torque_noise > 0.0 else None
             errors.append(run.errors(replay(plant, run, dataset, gains)))
-            if not judges_whole_run:
+            if not judges_free_run:
                 errors[-1][: round(dataset.settings.preparation.settling / dataset.interval)] = 0.0
         return errors
 

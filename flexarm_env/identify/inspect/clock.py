@@ -6,6 +6,7 @@ import numpy as np
 
 from flexarm_env.identify.inspect.evidence import HUB, Evidence
 from flexarm_env.identify.inspect.fault import Fault
+from flexarm_env.identify.inspect.report import fault
 
 
 def late_signals(evidence: Evidence) -> list[Fault]:
@@ -49,16 +50,6 @@ def _others_are_in_time(evidence: Evidence, signal: str) -> bool:
 
 
 def _fault(evidence: Evidence, signal: str, lag: float) -> Fault:
-    recording, time = evidence.recording, f"{abs(lag):.3g} s"
-    late = "late" if lag > 0.0 else "early"
-    message = f"{signal} is {time} {late} against the model's" if signal else f"all signals are {time} {late} against the command"
-    return Fault(
-        recording=recording.name,
-        source=recording.source,
-        signal=signal,
-        kind="clock",
-        value=lag,
-        unit="s",
-        message=message,
-        hint=f'{signal or "time"} = {{ shift = "{lag:.3g} s" }}',
-    )
+    time, late = f"{abs(lag):.3g} s", "late" if lag > 0.0 else "early"
+    text = f"is {time} {late} against the model's" if signal else f"all signals are {time} {late} against the command"
+    return fault(evidence.recording, signal, "clock", lag, text, f'{signal or "time"} = {{ shift = "{lag:.3g} s" }}')

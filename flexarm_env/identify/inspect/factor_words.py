@@ -6,6 +6,7 @@ import math
 
 from flexarm_env.identify.inspect.evidence import Evidence
 from flexarm_env.identify.inspect.fault import Fault
+from flexarm_env.identify.inspect.report import fault
 from flexarm_env.parameters import INPUTS
 from flexarm_env.units import factor as unit_factor
 
@@ -33,7 +34,6 @@ def factor_fault(evidence: Evidence, signal: str, value: float, rival: str = "",
         rival: that could be at fault in its place.
         roughly: whether the model is wrong elsewhere, too, so that the value is no more than an estimate.
     """
-    recording = evidence.recording
     # The constants of the model, too, change the factor of a command, of an only signal, or beside a wrong model.
     numbers = evidence.numbers
     close = numbers.likely_factor if roughly or rival or signal in INPUTS else numbers.known_factor
@@ -46,17 +46,8 @@ def factor_fault(evidence: Evidence, signal: str, value: float, rival: str = "",
     gain = ""
     if signal in evidence.signals and evidence.arm.parameter(f"sensors.{signal}.gain").spread and not words:
         gain = f", or in the arm file [sensors.{signal}] gain = {value * evidence.arm.value(f'sensors.{signal}.gain'):.4g}"
-    return Fault(
-        recording=recording.name,
-        source=recording.source,
-        signal=signal,
-        kind="factor",
-        value=number,
-        unit="",
-        message=f"{signal} is {size} of the model's{also}",
-        hint=f"{signal} = {{ {entry} }}{gain}",
-        other=rival,
-    )
+    text, hint = f"is {size} of the model's{also}", f"{signal} = {{ {entry} }}{gain}"
+    return fault(evidence.recording, signal, "factor", number, text, hint, other=rival)
 
 
 def _number(value: float) -> str:

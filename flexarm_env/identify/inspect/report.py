@@ -20,10 +20,11 @@ def fault(
     recording: Recording,
     signal: str,
     kind: str,
-    value: float,
+    value: float | None,
     predicate: str,
     hint: str = "",
     rows: ArrayLike | None = None,
+    other: str = "",
 ) -> Fault:
     """Make a fault of a recording.
 
@@ -31,17 +32,18 @@ def fault(
         recording: that shows it.
         signal: at fault; "" where all are.
         kind: one of `KINDS`.
-        value: its size.
+        value: its size; None where it has none.
         predicate: of the sentence whose subject is the signal, or the whole sentence where there is none.
         hint: the line that mends it.
         rows: samples that show it; None where all do.
+        other: the other signal of an exchange, or the one that could be at fault in its place.
     """
     assert kind in KINDS
     unit = UNITS[signal] if kind in _IN_UNIT else "s" if kind in _IN_SECONDS else ""
     samples = () if rows is None else tuple(int(row) for row in np.atleast_1d(rows))
     share = len(samples) / len(recording) if rows is not None else 1.0
     message = f"{signal} {predicate}".strip()
-    return Fault(recording.name, recording.source, signal, kind, value, unit, message, hint, samples, share)
+    return Fault(recording.name, recording.source, signal, kind, value, unit, message, hint, samples, share, other)
 
 
 def quantity(value: float, unit: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from flexarm_env.identify.inspect.evidence import HUB, Evidence
 from flexarm_env.identify.inspect.fault import Fault
+from flexarm_env.identify.inspect.report import fault
 
 
 def signs(evidence: Evidence) -> list[Fault]:
@@ -27,16 +28,6 @@ def signs(evidence: Evidence) -> list[Fault]:
 
 
 def _fault(evidence: Evidence, signal: str, rival: str) -> Fault:
-    recording = evidence.recording
     also = f" (or {rival} does: with one signal alone the two look alike)" if rival else ""
-    return Fault(
-        recording=recording.name,
-        source=recording.source,
-        signal=signal,
-        kind="sign",
-        value=-1.0,
-        unit="",
-        message=f"{signal} runs against the model{also}",
-        hint=f"{signal} = {{ sign = -1 }}",
-        other=rival,
-    )
+    text, hint = f"runs against the model{also}", f"{signal} = {{ sign = -1 }}"
+    return fault(evidence.recording, signal, "sign", -1.0, text, hint, other=rival)

@@ -8,6 +8,7 @@ from itertools import combinations
 from flexarm_env.identify.inspect.agreement import Agreement
 from flexarm_env.identify.inspect.evidence import Evidence
 from flexarm_env.identify.inspect.fault import Fault
+from flexarm_env.identify.inspect.report import fault
 
 
 def exchanged_signals(evidence: Evidence) -> list[Fault]:
@@ -46,15 +47,5 @@ def _apart(one: Agreement, other: Agreement) -> float:
 
 
 def _fault(evidence: Evidence, one: str, other: str) -> Fault:
-    recording = evidence.recording
-    return Fault(
-        recording=recording.name,
-        source=recording.source,
-        signal=one,
-        kind="swapped",
-        value=None,
-        unit="",
-        message=f"{one} and {other} are exchanged: each moves as the model's other does",
-        hint=f"exchange the columns of {one} and {other}",
-        other=other,
-    )
+    text = f"and {other} are exchanged: each moves as the model's other does"
+    return fault(evidence.recording, one, "swapped", None, text, f"exchange the columns of {one} and {other}", other=other)

@@ -86,7 +86,7 @@ class ErrorMeasure(Protocol):
     """How errors are measured."""
 
     @property
-    def judges_whole_run(self) -> bool:
+    def judges_free_run(self) -> bool:
         """Whether a replay of whole recordings says anything about the model."""
 
     def score(self, arm: Arm, dataset: Dataset, held_out: bool) -> Score:
@@ -103,7 +103,7 @@ class ErrorMeasure(Protocol):
 class WindowErrors:
     """Errors in windows of 1 s from estimated states, and of one free run."""
 
-    judges_whole_run: bool = True
+    judges_free_run: bool = True
 
     def score(self, arm: Arm, dataset: Dataset, held_out: bool) -> Score:
         """Measure the errors of an arm on the held-out or the fitted part."""
@@ -146,7 +146,7 @@ class WindowErrors:
 class InnovationErrors:
     """Innovations of the observer that the stated torque noise gives."""
 
-    judges_whole_run: bool = False
+    judges_free_run: bool = False
 
     def score(self, arm: Arm, dataset: Dataset, held_out: bool) -> Score:
         """Measure the errors of an arm on the held-out or the fitted part."""

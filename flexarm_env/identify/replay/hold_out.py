@@ -27,7 +27,7 @@ def hold_out_late(calibrated: Arm, dataset: Dataset) -> Dataset:
     Returns:
         The same dataset object where nothing changes.
     """
-    if not error_measure(calibrated).judges_whole_run:
+    if not error_measure(calibrated).judges_free_run:
         return dataset
     held, fitted = score(calibrated, dataset), score(calibrated, dataset, held_out=False)
     settings = dataset.settings

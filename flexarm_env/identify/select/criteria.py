@@ -82,13 +82,13 @@ class ThresholdCriteria:
     Attributes:
         nominal: score of the arm as given.
         refitted: score with its constants calibrated.
-        judges_whole_run: false where torque noise is stated, so that no free run says anything.
+        judges_free_run: false where torque noise is stated, so that no free run says anything.
         settings: the thresholds.
     """
 
     nominal: Score
     refitted: Score
-    judges_whole_run: bool
+    judges_free_run: bool
     settings: Settings
 
     def measure(self, scores: Sequence[Score]) -> Measure:
@@ -97,9 +97,9 @@ class ThresholdCriteria:
         Otherwise the free run counts as much, since it shows the long-term error; and alone, where even windows are far off.
         """
         best = min(s.windows for s in scores)
-        if self.judges_whole_run and best > self.settings.errors.far_off:
+        if self.judges_free_run and best > self.settings.errors.far_off:
             return lambda s: s.free_run_excess
-        if self.judges_whole_run and best > self.settings.errors.close:
+        if self.judges_free_run and best > self.settings.errors.close:
             return lambda s: s.mean_excess
         return lambda s: s.excess
 
@@ -121,14 +121,14 @@ class ThresholdCriteria:
         score, errors, shares = found.score, self.settings.errors, self.settings.selecting
         share = shares.least_total_gain if score.windows > errors.far_off else shares.least_total_gain_near
         pairs = [(self.refitted.windows, score.windows, errors.explained, share)]
-        if self.judges_whole_run:
+        if self.judges_free_run:
             pairs.append((self.refitted.free_run, score.free_run, errors.free_run_explained, shares.least_total_gain))
         return all(new <= enough or excess(new) <= (1.0 - least) * excess(old) for old, new, enough, least in pairs)
 
     def explains_most(self, score: Score) -> bool:
         """Whether effects remove most of the excess, in windows and in whole runs alike, though more than the noise is left."""
         pairs = [(self.refitted.excess, score.excess)]
-        if self.judges_whole_run:
+        if self.judges_free_run:
             pairs.append((self.refitted.free_run_excess, score.free_run_excess))
         return all(left <= (1.0 - self.settings.selecting.least_total_gain) * before for before, left in pairs)
 
