@@ -75,7 +75,7 @@ def conclude(
         trace=trace.as_json(),
         settings=calibrator.settings,
         seed=seed,
-        closed_loop=closed_loop_errors({name: scores[name] for name in free}),
+        closed_loop=closed_loop_errors(dict(zip(free, (nominal, base.arm, model.arm), strict=True)), calibrator.dataset),
         budget=shares,
     )
 
@@ -108,7 +108,7 @@ def insufficient(arm: Arm, calibrator: Calibrator) -> Diagnosis:
         notes=[],
         next_run=propose({"": nominal}, calibrator.dataset.interval),
         settings=calibrator.settings,
-        closed_loop=closed_loop_errors(dict.fromkeys(names, score)),
+        closed_loop=closed_loop_errors(dict.fromkeys(names, nominal), calibrator.dataset),
     )
 
 

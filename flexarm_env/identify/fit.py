@@ -77,7 +77,7 @@ def fit(
         free_run={"nominal": before.free_run, "refitted": after.free_run},
         seconds=time.perf_counter() - began,
         settings=settings,
-        closed_loop=closed_loop_errors({"nominal": before, "refitted": after}),
+        closed_loop=closed_loop_errors({"nominal": nominal, "refitted": found.arm}, dataset),
         notes=list(dataset.notes),
     )
 
@@ -127,7 +127,8 @@ def add(
         calibrator, base = Calibrator(nominal, dataset, workers).choose_hold_out()
         adding.at(0.0, f"adding {effect}")
         found = calibrate_with_effect(calibrator, base, effect)
-        scores = [calibrator.score(a) for a in (nominal, base.arm, found.arm)]
+        arms = (nominal, base.arm, found.arm)
+        scores = [calibrator.score(one) for one in arms]
         final = calibrator.calibrate_on_all_data(found)
         values = _effect_first(estimates(final, nominal), effect)
     adding.at(1.0, "done")
@@ -140,7 +141,7 @@ def add(
         free_run={name: s.free_run for name, s in zip(names, scores, strict=True)},
         seconds=time.perf_counter() - began,
         settings=settings,
-        closed_loop=closed_loop_errors(dict(zip(names, scores, strict=True))),
+        closed_loop=closed_loop_errors(dict(zip(names, arms, strict=True)), calibrator.dataset),
         notes=list(dataset.notes),
     )
 

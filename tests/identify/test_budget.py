@@ -33,7 +33,7 @@ def score(arm_angle: float, strain_base: float, noise: tuple[float, float] = (1e
         "arm_angle": SignalError(arm_angle, noise[0] * arm_angle),
         "strain_base": SignalError(strain_base, noise[1] * strain_base),
     }
-    return Score(float(np.hypot(arm_angle, strain_base) / np.sqrt(2.0)), 1.0, None, signals)
+    return Score(float(np.hypot(arm_angle, strain_base) / np.sqrt(2.0)), 1.0, signals)
 
 
 def steps_through(*scores: Score) -> list[ErrorStep]:

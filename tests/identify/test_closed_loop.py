@@ -12,7 +12,7 @@ from flexarm_env import Arm, Recording, compare, simulate
 from flexarm_env.control.law import ControlLaw, Feedback
 from flexarm_env.experiments.rig import SpeedEstimate
 from flexarm_env.identify.replay.dataset import prepare
-from flexarm_env.identify.replay.error_measure import score
+from flexarm_env.identify.replay.error_measure import closed_loop_errors, score
 from flexarm_env.identify.replay.loop import Loop, compare_commands, law_commands
 from flexarm_env.pictures.page import Findings, page
 from flexarm_env.plant.plant import NO_GAINS, NO_INTERVALS, NOT_MEASURED
@@ -204,9 +204,10 @@ def test_scores_hold_both_only_where_the_loop_is_known():
     run = simulate(machine, "square", duration=4.0, rate=200.0)
     arm, dataset = prepare(thesis(PD), [run])
     known, bare = score(arm, dataset), score(*prepare(thesis(None), [run]))
-    assert (known.windows, known.free_run, bare.closed_loop) == (bare.windows, bare.free_run, None)
-    assert known.closed_loop is not None
-    assert known.closed_loop != known.free_run
+    assert (known.windows, known.free_run) == (bare.windows, bare.free_run)
+    assert closed_loop_errors({"given": thesis(None)}, prepare(thesis(None), [run])[1]) == {}
+    (closed,) = closed_loop_errors({"given": arm}, dataset).values()
+    assert closed != known.free_run
 
 
 def test_results_as_plain_data_have_both():

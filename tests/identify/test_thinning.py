@@ -135,3 +135,13 @@ def test_a_delay_of_the_usual_size_is_measured_in_thinned_recordings(effect, par
     found = add(effect, arm, [run], rate=250.0)
     assert found.arm.value(f"effects.{effect}.{parameter}") == pytest.approx(size, rel=0.1)
     assert found.error["final"] < 1.1
+
+
+def test_a_rate_that_leaves_no_reading_of_a_signal_is_refused():
+    arm = Arm.load("cu-rigid")
+    run = simulate(arm, "square", duration=2.0, rate=1000.0, name="run")
+    speed = run.signals["motor_speed"].copy()
+    speed[::2] = np.nan
+    odd = replace(run, signals=run.signals | {"motor_speed": speed})
+    with pytest.raises(InputError, match="rate 250 Hz leaves no reading of motor_speed in run"):
+        prepare(arm, [odd], rate=250.0)

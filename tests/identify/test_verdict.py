@@ -82,7 +82,7 @@ def test_all_of_the_data_decide_between_rivals():
 
 
 def of_signals(windows: float, **errors: float) -> Score:
-    return Score(windows, windows, None, {signal: SignalError(error, error) for signal, error in errors.items()})
+    return Score(windows, windows, {signal: SignalError(error, error) for signal, error in errors.items()})
 
 
 @pytest.mark.parametrize(

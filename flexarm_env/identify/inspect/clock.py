@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexarm_env.identify.inspect.evidence import HUB, Evidence
+from flexarm_env.identify.inspect.evidence import Evidence
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.report import fault
+from flexarm_env.identify.inspect.series import HUB
 
 
 def late_signals(evidence: Evidence) -> list[Fault]:

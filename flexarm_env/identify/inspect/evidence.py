@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.agreement import Agreement
 from flexarm_env.identify.inspect.free_run import FreeRun, Replayer, Table, replayer
+from flexarm_env.identify.inspect.series import HUB
 from flexarm_env.identify.settings import MotionFaults, Settings
 from flexarm_env.recordings.recording import Recording
-
-#: Signals of the hub, which are readings of one motion.
-HUB = ("arm_angle", "motor_speed")
 
 
 @dataclass(frozen=True)

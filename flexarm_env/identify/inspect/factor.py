@@ -8,9 +8,10 @@ import numpy as np
 
 from flexarm_env.identify.inspect.agreement import Agreement
 from flexarm_env.identify.inspect.command_factor import command_factor
-from flexarm_env.identify.inspect.evidence import HUB, Evidence
+from flexarm_env.identify.inspect.evidence import Evidence
 from flexarm_env.identify.inspect.factor_words import factor_fault
 from flexarm_env.identify.inspect.fault import Fault
+from flexarm_env.identify.inspect.series import HUB
 
 #: A constant that the factor of a signal of the beam looks like.
 STIFFNESS = "beam.bending_stiffness"

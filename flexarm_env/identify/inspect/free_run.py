@@ -85,11 +85,13 @@ class Replayer:
 
     Attributes:
         plant: the arm with the recording's payload.
-        dataset: the recording alone, with its initial state.
+        dataset: the recording alone, with its initial state, and the noise of the signals that give that.
+        noise: (signals,) standard deviation of the readings.
     """
 
     plant: Plant
     dataset: Dataset
+    noise: Floats
 
     def free_run(self, command_factor: float = 1.0) -> FreeRun:
         """Replay the commands divided by a factor."""
@@ -101,7 +103,7 @@ class Replayer:
             cell_means(run.time, values, cell, numbers.longest_gap)
             for values in (run.measured, modelled, _integrals(run.time, run.measured))
         )
-        noise = dataset.noise * math.sqrt(dataset.interval / cell)
+        noise = self.noise * math.sqrt(dataset.interval / cell)
         return FreeRun(dataset.signals, cell, measured, means, integrals, noise, numbers)
 
 
@@ -113,7 +115,7 @@ def replayer(arm: Arm, recording: Recording, settings: Settings) -> Replayer:
     """
     reduced, dataset = prepare(arm, [recording], settings)
     (plant,) = dataset.plants(reduced).values()
-    tried = [Replayer(plant, started) for started in _starts(dataset)]
+    tried = [Replayer(plant, started, dataset.noise) for started in _starts(dataset)]
     return max(tried, key=_agreed) if len(tried) > 1 else tried[0]
 
 

@@ -22,7 +22,7 @@ def frozen(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
         readings = still(series, numbers) if series.flicker > numbers.flickers else np.zeros(0, dtype=np.int64)
         if not readings.size or all(one.stands_still(series.rows[readings], numbers) for one in partners(signal, every)):
             continue
-        rows, value = series.rows[readings], float(series.values[readings[0]])
+        rows, value = np.sort(series.rows[readings]), float(series.values[readings[0]])
         text = f"stands still at {shown(signal, value)} in {row_list(rows, numbers.most_named)}"
         hint = ignore(recording, signal, rows, numbers.most_ignored)
         found.append(fault(recording, signal, "dropout", value, text, hint, rows))

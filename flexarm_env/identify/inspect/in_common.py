@@ -13,7 +13,7 @@ Key = tuple[str, str, str]
 
 
 def in_common(evidence: Sequence[Evidence], found: Sequence[Sequence[Fault]]) -> list[Fault]:
-    """Give all recordings the faults that most of them show, at the median size, and drop small factors that few show.
+    """Give all recordings the faults that most of them show, at the median size, alone; else drop small factors that few show.
 
     Args:
         evidence: on each recording.

@@ -16,7 +16,7 @@ from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.recordings.recording import Recording
 
 #: Kinds in the order in which they are looked for: each would look like a fault of the kinds after it.
-KINDS: tuple[Callable[[Evidence], list[Fault]], ...] = (exchanged_signals, late_signals, signs, factors)
+MOTION_CHECKS: tuple[Callable[[Evidence], list[Fault]], ...] = (exchanged_signals, late_signals, signs, factors)
 
 
 def motion_faults(arm: Arm, recordings: Sequence[Recording], settings: Settings = SETTINGS) -> list[Fault]:
@@ -48,7 +48,7 @@ def motion_faults(arm: Arm, recordings: Sequence[Recording], settings: Settings 
     """
     with_signals = [one for one in recordings if set(one.signals) & set(arm.signals)]  # else the readings of all were at fault
     evidence = [gather(arm, recording, settings) for recording in with_signals]
-    found: list[list[Fault]] = [next((faults for kind in KINDS if (faults := kind(one))), []) for one in evidence]
+    found: list[list[Fault]] = [next((faults for check in MOTION_CHECKS if (faults := check(one))), []) for one in evidence]
     return in_common(evidence, found)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -15,8 +16,8 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-#: Signals of the hub: where one of them rests, so does the other.
-_HUB = ("arm_angle", "motor_speed")
+#: Signals of the hub, which are readings of one motion: where one of them rests, so does the other.
+HUB = ("arm_angle", "motor_speed")
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class Series:
     def __len__(self) -> int:
         return len(self.values)
 
-    @property
+    @functools.cached_property
     def changes(self) -> Floats:
         """Changes (n - 1,) from one reading to the next."""
         return np.diff(self.values)
@@ -87,4 +88,4 @@ class Series:
 
 def partners(signal: str, series: Mapping[str, Series]) -> list[Series]:
     """List the signals that rest where a signal does: those of the hub for one of the hub, else all others."""
-    return [one for other, one in series.items() if other != signal and (signal not in _HUB or other in _HUB)]
+    return [one for other, one in series.items() if other != signal and (signal not in HUB or other in HUB)]

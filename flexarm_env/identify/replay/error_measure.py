@@ -52,14 +52,12 @@ class Score:
         windows: in windows of 1 s from estimated states; where torque noise is stated, the rms of the innovations over their
             standard deviation under both noises, since such a disturbance drives any free replay away within a window.
         free_run: each recording replayed once from its start under the recorded command.
-        closed_loop: the same under the control law, where recordings were made in a known loop; None where there is none.
         signals: the errors in windows by signal, of those with a reading. Their squares, weighted by the number of readings,
             average to that of `windows`.
     """
 
     windows: float
     free_run: float
-    closed_loop: float | None = None
     signals: Mapping[str, SignalError] = field(default_factory=dict, hash=False)
 
     @property
@@ -118,8 +116,7 @@ class WindowErrors:
             totals += [_squares(errors) for errors in both]
             parts.append((both[0], dataset.noise))
         windows, free = np.sqrt(totals / dataset.readings(held_out))
-        closed = _closed_loop_error(plants, dataset, held_out)
-        return Score(float(windows), float(free), closed, _by_signal(parts, dataset, held_out))
+        return Score(float(windows), float(free), _by_signal(parts, dataset, held_out))
 
     def brief(self, arm: Arm, dataset: Dataset) -> float:
         """Measure the held-out error in windows, from states that two corrected replays estimate."""
@@ -166,8 +163,7 @@ class InnovationErrors:
             totals += [_squares(errors[rows]) for errors in (corrected, free)]
             parts.append((corrected[rows], sigmas[run.payload]))
         innovations, free_run = np.sqrt(totals / dataset.readings(held_out))
-        closed = _closed_loop_error(plants, dataset, held_out)
-        return Score(float(innovations), float(free_run), closed, _by_signal(parts, dataset, held_out))
+        return Score(float(innovations), float(free_run), _by_signal(parts, dataset, held_out))
 
     def brief(self, arm: Arm, dataset: Dataset) -> float:
         """Measure the held-out innovations."""
@@ -192,9 +188,9 @@ def score(arm: Arm, dataset: Dataset, held_out: bool = True) -> Score:
     return error_measure(arm).score(arm, dataset, held_out)
 
 
-def closed_loop_errors(scores: Mapping[str, Score]) -> dict[str, float]:
-    """Select the errors in closed loop; none where no loop is known."""
-    return {name: score.closed_loop for name, score in scores.items() if score.closed_loop is not None}
+def closed_loop_errors(arms: Mapping[str, Arm], dataset: Dataset) -> dict[str, float]:
+    """Measure the held-out errors of arms in closed loop, by name; none where no recording was made in a known loop."""
+    return {name: _closed_loop_error(arm, dataset) for name, arm in arms.items()} if dataset.has_loop else {}
 
 
 def window_errors(arm: Arm, plants: Mapping[float, Plant], dataset: Dataset) -> list[Floats]:
@@ -207,15 +203,11 @@ def window_errors(arm: Arm, plants: Mapping[float, Plant], dataset: Dataset) -> 
     return errors
 
 
-def _closed_loop_error(plants: Mapping[float, Plant], dataset: Dataset, held_out: bool) -> float | None:
-    """Measure the error of whole recordings in closed loop; recordings without a loop count in a free run."""
-    if not dataset.has_loop:
-        return None
-    total = 0.0
-    for run in dataset.runs_to_replay(held_out):
-        rows = ~run.train if held_out else run.train
-        total += _squares(run.errors(whole_replay(plants[run.payload], run, dataset), dataset.noise)[rows])
-    return float(np.sqrt(total / dataset.readings(held_out)))
+def _closed_loop_error(arm: Arm, dataset: Dataset) -> float:
+    """Measure the held-out error of whole recordings in closed loop; recordings without a loop count in a free run."""
+    plants = dataset.plants(arm)
+    errors = [run.errors(whole_replay(plants[run.payload], run, dataset), dataset.noise)[~run.train] for run in dataset.runs]
+    return float(np.sqrt(sum(map(_squares, errors)) / dataset.readings(held_out=True)))
 
 
 def _by_signal(parts: Sequence[tuple[Floats, Floats]], dataset: Dataset, held_out: bool) -> dict[str, SignalError]:

@@ -37,7 +37,7 @@ def thin(
         The recordings, and a note for a person where they are thinned.
 
     Raises:
-        InputError: for a rate above the recordings', and for one beside stated torque noise.
+        InputError: for a rate above the recordings', one that leaves too few samples, and one beside stated torque noise.
     """
     interval = _interval(recordings)
     count = _count(arm, recordings, noise, settings, interval) if rate is None else _asked_count(arm, recordings, rate, settings)
@@ -45,7 +45,14 @@ def thin(
         return list(recordings), []
     kept = f"thinned from {1.0 / interval:.4g} to {1.0 / (count * interval):.4g} Hz"
     why = "as asked" if rate is not None else "which vibrations, lags and commands allow; --rate 0 keeps all"
-    return [_thinned(r, count * interval) for r in recordings], [f"{kept}, {why}"]
+    thinned = [_thinned(r, count * interval) for r in recordings]
+    for recording in thinned:
+        for signal in arm.signals:
+            if not np.isfinite(recording.signals[signal]).any():
+                raise InputError(
+                    f"rate {rate:g} Hz leaves no reading of {signal} in {recording.name}: give another, or 0 to keep all"
+                )
+    return thinned, [f"{kept}, {why}"]
 
 
 def _interval(recordings: Sequence[Recording]) -> float:

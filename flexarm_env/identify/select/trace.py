@@ -130,7 +130,6 @@ class Trace:
                     "equivalent": [list(a.equivalent) for a in step.accepted],
                     "error": {"before": before.model.score.windows, "after": step.model.score.windows},
                     "free_run": {"before": before.model.score.free_run, "after": step.model.score.free_run},
-                    "closed_loop": {"before": before.model.score.closed_loop, "after": step.model.score.closed_loop},
                     "tried": [{"effect": t.effect, "gain": t.gain} for t in step.tried],
                 }
             )

@@ -207,7 +207,9 @@ def test_the_shipped_recordings_are_sound():
 )
 def test_measured_recordings_are_sound(measurements, arm, pattern):
     model = Arm.load(arm)
-    assert inspect_recordings(model, read_recordings(model, sorted(measurements.glob(pattern)), None)).faults == ()
+    files = sorted(measurements.glob(pattern))
+    assert files
+    assert inspect_recordings(model, read_recordings(model, files, None)).faults == ()
 
 
 def test_a_gap_in_a_motion_is_not_two_runs(thesis, square):
@@ -235,3 +237,18 @@ def test_a_hub_that_is_stuck_while_the_beam_rings_is_sound(thesis, square):
     """Encoder and tachometer without noise stand still together."""
     signals = square.signals | {"arm_angle": np.zeros(len(square)), "motor_speed": np.zeros(len(square))}
     assert inspect_recordings(thesis, [replace(square, signals=signals)]).faults == ()
+
+
+def test_two_stretches_that_stand_still_are_left_out_in_their_order(thesis, square):
+    values = square.signals["arm_angle"].copy()
+    rows = np.arange(len(values))
+    moving = np.flatnonzero(np.abs(square.signals["motor_speed"]) > 2.0)
+    first, last = moving[0] + 20, moving[moving > moving[0] + 400][0] + 20
+    values[first : first + 30], values[last : last + 60] = values[first], values[last]
+    found = [one for one in inspect_recordings(thesis, [changed(square, "arm_angle", values)]).faults if one.kind == "dropout"]
+    assert found
+    for one in found:
+        assert list(one.rows) == sorted(one.rows)
+        stretches = tomllib.loads(one.hint)["arm_angle"]["ignore"]
+        assert all(start < end for start, end in stretches)
+        assert set(one.rows) <= {*rows[first : first + 30], *rows[last : last + 60]}

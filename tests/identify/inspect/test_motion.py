@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 
 from flexarm_env import Arm, Recording, simulate
+from flexarm_env.identify.inspect.evidence import gather
 from flexarm_env.identify.inspect.motion import motion_faults
+from flexarm_env.identify.settings import SETTINGS
 
 #: Largest relative error of a factor or a lag.
 CLOSE = 0.02
@@ -252,3 +254,9 @@ def test_a_spring_that_the_model_lacks_is_no_clock():
         angle = [replace(run, signals={"arm_angle": run.signals["arm_angle"]}) for run in runs]
         for one in (*runs, *angle):
             assert motion_faults(arm, [one]) == []
+
+
+def test_the_noise_of_all_signals_counts_from_whichever_the_start_is_read():
+    part = with_signal(sound().part(0.3), "motor_speed", lambda speed: speed / 5.0)
+    run = gather(Arm.load("thesis"), part, SETTINGS).run
+    assert np.isfinite(run.noise).all()
