@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.active_laws import LAW_LISTS, ActiveLaw, law_lists
 from flexarm_env.plant.beam import Matrix, spread_out, turned
+from flexarm_env.plant.blocks import blocks_of
 from flexarm_env.plant.event_free_table import DEPTH, table_size
-from flexarm_env.plant.modal import Mode, complete, mode_of
+from flexarm_env.plant.modal import Decompose, Mode, complete, mode_of
 from flexarm_env.plant.structure import DRIVERS, HUB_TORQUE, MOTOR_TORQUE, LinearModel, Structure, exceeds
 
 RESPONSE = 5
@@ -25,7 +26,11 @@ TOLERANCE = 1e-12
 
 
 def pack(
-    structure: Structure, model: LinearModel, laws: Sequence[Sequence[ActiveLaw]], interval: float
+    structure: Structure,
+    model: LinearModel,
+    laws: Sequence[Sequence[ActiveLaw]],
+    interval: float,
+    decompose: Decompose = blocks_of,
 ) -> tuple[Matrix, NDArray[np.int64], int]:
     """Pack (d, n, whole samples of delay) for the kernel, without the tables that `prepare` writes.
 
@@ -34,12 +39,13 @@ def pack(
         model: their matrices.
         laws: those at work, for each arm; they differ in their parameters only.
         interval: sampling time [s].
+        decompose: gives the blocks of the dynamics of each mode.
 
     Returns:
         d is (numbers,), or for stacked arms (arms, numbers).
     """
     active, arms = laws[0], model.mass.shape[:-2]
-    modes = _modes(structure, model)
+    modes = _modes(structure, model, decompose)
     points = _points(model, active)
     whole, early = split_delay(structure.input_delay, interval)
     n = _counts(structure, model, modes, len(points), any(law.varies for law in active))
@@ -64,10 +70,10 @@ def pack(
     return d, np.concatenate([n, np.array([number for rows in lists for number in rows], dtype=np.int64)]), whole
 
 
-def _modes(structure: Structure, model: LinearModel) -> list[Mode]:
+def _modes(structure: Structure, model: LinearModel, decompose: Decompose) -> list[Mode]:
     bodies = 2 if structure.separate_motor else 1
     count = 8 if exceeds(structure.gear_gap, 0.0) else 2**bodies
-    modes = [mode_of(structure, model, which) for which in range(count)]
+    modes = [mode_of(structure, model, which, decompose) for which in range(count)]
     for which, mode in enumerate(modes):
         for body in range(bodies):
             if not which >> body & 1:

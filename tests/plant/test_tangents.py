@@ -1,0 +1,194 @@
+"""Derivatives of readings against differences of the exact plant, in every mode and through each kind of event."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from plant_arms import CATALOGUE, FRICTION, SIGNALS, law, noise
+
+from flexarm_env.plant import layout as at
+from flexarm_env.plant.plant import Plant
+from flexarm_env.plant.structure import Structure
+from flexarm_env.plant.tangents.constants import PLACES, Neighbours, constant_tangents
+from flexarm_env.plant.tangents.tangents import Tangents
+from flexarm_env.sensors.arm_angle import ArmAngle
+from flexarm_env.sensors.motor_speed import MotorSpeed
+
+BASE = ("hub_inertia", "motor_inertia", "torque_constant", "gear_ratio", "viscous", "law.0.0", "law.1.0")
+BEAM = ("length", "mass_per_length", "bending_stiffness")
+INTERVAL = 0.005
+SWING = 4.0 * np.sin(2 * np.pi * 0.7 * INTERVAL * np.arange(200))
+UNEVEN = INTERVAL * (1.0 + 0.3 * np.sin(np.arange(200.0)))
+
+#: By name: what differs from one element with base friction, and the constants of that.
+ARMS = {
+    "rigid": ({"elements": 0}, ()),
+    "one element": ({}, BEAM),
+    "four elements": ({"elements": 4}, BEAM),
+    "cable, lag, damping": (
+        {"hub_stiffness": 0.5, "current_lag": 0.004, "beam_damping": 1e-3},
+        ("hub_stiffness", "current_lag", "beam_damping"),
+    ),
+    "root": ({"elements": 2, "root_compliance": 0.01}, ("root_compliance",)),
+    "voltage": ({"resistance": 1.2}, ("resistance",)),
+    "delay": ({"input_delay": 0.0075}, ("input_delay",)),
+    "gears": ({"gear_compliance": 1 / 300}, ("gear_compliance",)),
+    "backlash": ({"gear_gap": 0.01}, ("gear_gap",)),
+}
+#: The same of laws: those beside base friction.
+LAWS = {
+    "saturation": ((law("saturation", 2.5),), 1e-7),
+    "stribeck": ((law("stribeck", 0.05, 0.3),), 1e-6),
+    "cogging": ((law("cogging", 0.03, 12.0),), 1e-6),
+    "drag": ((law("air_drag", 0.05),), 1e-6),
+}
+
+
+class Machine:
+    """An arm with its laws, of which any constant can be changed."""
+
+    def __init__(self, structure, laws):
+        self.structure, self.laws = structure, tuple(laws)
+
+    def value(self, path):
+        if path.startswith("law."):
+            _, which, place = path.split(".")
+            return self.laws[int(which)].parameters[int(place)]
+        return getattr(self.structure, path)
+
+    def moved(self, path, step):
+        if not path.startswith("law."):
+            return Machine(replace(self.structure, **{path: self.value(path) + step}), self.laws)
+        _, which, place = path.split(".")
+        laws = list(self.laws)
+        parameters = list(laws[int(which)].parameters)
+        parameters[int(place)] += step
+        laws[int(which)] = replace(laws[int(which)], parameters=tuple(parameters))
+        return Machine(self.structure, laws)
+
+    def plant(self):
+        plant = Plant(self.structure, self.laws, CATALOGUE, INTERVAL)
+        plant.place()
+        return plant
+
+    def tangents(self, paths, step=1e-3):
+        scales = np.array([abs(self.value(path)) for path in paths])
+        beside = [self.moved(path, step * scale * k) for path, scale in zip(paths, scales, strict=True) for k in PLACES]
+        neighbours = Neighbours([m.structure for m in beside], [m.laws for m in beside], step * scales)
+        plant = self.plant()
+        return plant, Tangents(plant, constant_tangents(self.structure, self.laws, INTERVAL, neighbours), scales)
+
+
+def machine(elements=1, laws=(), **changes):
+    constants = {"viscous": 0.1018, "motor_viscous_share": 0.0177}
+    constants["sensors"] = SIGNALS if elements else {"arm_angle": ArmAngle.channel(), "motor_speed": MotorSpeed.channel(1.1)}
+    if elements:
+        constants |= {"length": 1.0, "mass_per_length": 0.42381, "bending_stiffness": 7.911324}
+    return Machine(Structure(1.5, 0.33, 0.00193, 0.00129, elements=elements, **(constants | changes)), (*FRICTION, *laws))
+
+
+def differences(own, path, readings):
+    """Extrapolated central differences (samples, signals) over the step at which two orders of them agree best, and how well."""
+    best, width = None, np.inf
+    for step in 10.0 ** np.arange(-6.0, -1.4, 0.5) * abs(own.value(path)):
+        one, two, three = (
+            (readings(own.moved(path, h)) - readings(own.moved(path, -h))) / (2 * h) for h in (step, step / 2, step / 4)
+        )
+        once = (4 * two - one) / 3, (4 * three - two) / 3
+        found = (16 * once[1] - once[0]) / 15
+        apart = np.max(np.abs(found - once[1]))
+        if apart < width:
+            best, width = found, apart
+    return best, width
+
+
+def check(own, paths, command, *options, tolerance=1e-7):
+    """Compare the derivatives of each signal with differences, relative to that signal's largest."""
+    _, tangents = own.tangents(paths)
+    readings, found = tangents.replay(command, *options)
+    assert np.array_equal(readings, own.plant().replay(command, *options))
+    for number, path in enumerate(paths):
+        wanted, width = differences(own, path, lambda other: other.plant().replay(command, *options))
+        size = np.max(np.abs(wanted), axis=0)
+        apart = np.max(np.abs(found[..., number] - wanted), axis=0)
+        assert np.all(apart <= tolerance * size + 3 * width), (path, apart / size, width / size)
+        assert width < 1e-4 * size.max(), (path, width, size)
+    return found
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_constants_of_arms_with_base_friction(name):
+    changes, own = ARMS[name]
+    check(machine(**changes), (*BASE, *own), SWING)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_parameters_of_laws(name):
+    laws, tolerance = LAWS[name]
+    own = machine(elements=2, laws=laws)
+    check(own, ("hub_inertia", "law.0.0", *(f"law.2.{i}" for i in range(len(laws[0].parameters)))), SWING, tolerance=tolerance)
+
+
+def modes(own, command):
+    """Modes at the samples of a replay."""
+    plant = own.plant()
+    found = set()
+    for two in np.column_stack([command[:-1], command[1:]]):
+        plant.replay(two)
+        found.add(int(plant.state[at.MODE]))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("changes", "wanted"),
+    [({}, {0, 1}), ({"gear_compliance": 1 / 300}, {0, 1, 3}), ({"gear_gap": 0.01}, {0, 1, 4, 5})],
+    ids=["one body", "two bodies", "backlash"],
+)
+def test_runs_of_these_tests_pass_through_the_modes(changes, wanted):
+    assert wanted <= modes(machine(**changes), SWING)
+
+
+@pytest.mark.parametrize("name", ["one element", "gears"])
+def test_crowded_events(name):
+    changes, own = ARMS[name]
+    check(machine(**changes), (*BASE, *own), noise(0, 60, 4.0))
+
+
+@pytest.mark.parametrize("name", ["rigid", "one element", "delay", "backlash"])
+def test_uneven_sampling(name):
+    changes, own = ARMS[name]
+    check(machine(**changes), (*BASE, *own), SWING, UNEVEN)
+
+
+def corrected(own, physical, measured, command):
+    """Replay with physical gains (modes, states, signals), which do not depend on the constants."""
+    plant = own.plant()
+    return plant.replay(command, gains=block_gains(plant, physical), measured=measured)
+
+
+def block_gains(plant, physical):
+    gains = np.zeros((plant.modes, 2 * plant.blocks + plant.bodies, physical.shape[2]))
+    for mode in range(plant.modes):
+        gains[mode, : 2 * plant.blocks] = plant.to_modal(mode) @ physical[mode]
+        for body in range(plant.bodies):
+            gains[mode, 2 * plant.blocks + body] = physical[mode, body] * (mode >> body & 1)
+    return gains
+
+
+@pytest.mark.parametrize("changes", [{}, {"elements": 2, "hub_stiffness": 0.5}, {"gear_compliance": 1 / 300}])
+def test_corrected_replays(changes):
+    own, command = machine(**changes), SWING[:120]
+    plant, tangents = own.tangents(("hub_inertia", "viscous", "law.0.0", "bending_stiffness"))
+    measured = machine(**(changes | {"hub_inertia": 0.002})).plant().replay(command)
+    measured += 0.01 * np.random.default_rng(0).standard_normal(measured.shape)
+    measured[7::11, 1] = np.nan
+    physical = np.zeros((plant.modes, plant.states, len(plant.signals)))
+    physical[:, 0, 0], physical[:, len(plant.model.names), 1], physical[:, 2, 0] = 0.05, 0.1, 0.01
+    readings, found = tangents.replay(command, gains=block_gains(plant, physical), measured=measured)
+    assert np.array_equal(readings, corrected(own, physical, measured, command))
+    for number, path in enumerate(("hub_inertia", "viscous", "law.0.0", "bending_stiffness")):
+        wanted, width = differences(own, path, lambda other: corrected(other, physical, measured, command))
+        size = np.max(np.abs(wanted), axis=0)
+        assert np.all(np.max(np.abs(found[..., number] - wanted), axis=0) <= 1e-7 * size + 3 * width), path
