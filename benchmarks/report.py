@@ -47,6 +47,7 @@ GOALS = (
     Goal("six_over_base", "four elements, six effects: a step over the one above", "×", most=8),
     Goal("six_error", "… its error against DOP853 with the same laws", most=1e-6),
     Goal("six_error_32_times_finer", "… its error against steps 32 times as short", most=1e-6),
+    Goal("jacobian_over_replay", "derivatives by twelve constants over a corrected replay, largest of six", "×", most=3),
     Goal("diagnosis_s", "diagnosis of the shipped recordings on 2 cores", "s", most=120),
     Goal("import_s", "import flexarm_env", "s", most=0.3),
     Goal("first_simulation_s", "first simulation of a fresh process, warm cache", "s", most=1.5),
