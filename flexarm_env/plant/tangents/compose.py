@@ -28,5 +28,5 @@ def tangent_kernel(kernel: ModuleType) -> ModuleType:
         "flexarm_tangents",
         f"{numba.__version__}\n{own}\n{text}",
         lambda: ast.unparse(Compiled(ENTRANCES).visit(ast.parse(text))),
-        lambda: logging.getLogger(__name__).warning("Compiling the derivatives, once for these effects: about 30 s"),
+        lambda: logging.getLogger(__name__).warning("Compiling the derivatives, once for these effects: about 90 s"),
     )
