@@ -12,9 +12,11 @@ from typing import Any
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
-from benchmarks.hidden_effects.run import by_diagnosis, run  # noqa: E402
+from benchmarks.hidden_effects.run import run  # noqa: E402
 from benchmarks.machines import table  # noqa: E402
-from benchmarks.machines.cases import COUNTS, keys  # noqa: E402
+from benchmarks.machines.cases import keys  # noqa: E402
+from benchmarks.machines.lacks import COUNTS  # noqa: E402
+from benchmarks.machines.method import by_diagnosis_or_failure  # noqa: E402
 
 RESULTS = Path(__file__).resolve().parents[2] / "results" / "machines"
 
@@ -46,7 +48,7 @@ def main() -> None:
         line = f"{time.perf_counter() - began:5.0f} s  {count} of {len(chosen)}  {what}, error {found['error'].get('final')}"
         print(line, file=sys.stderr, flush=True)
 
-    answers = run(chosen, by_diagnosis, folder / "answers", asked.jobs, answered)
+    answers = run(chosen, by_diagnosis_or_failure, folder / "answers", asked.jobs, answered)
     if asked.kind is None:
         command = f"python -m benchmarks.machines --seed {asked.seed} --count {asked.count}"
         for figure in table.write(folder, answers, asked.seed, command):

@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from itertools import count
 from typing import Any
 
 import numpy as np
 
-from benchmarks.machines.catalogue import CATALOGUE, OUTSIDE, PLANT, SENSORS
-from benchmarks.machines.effects import Hidden, Sized, draw_details
+from benchmarks.machines.effects import Sized
 from benchmarks.machines.experiments import Run, runs
 from benchmarks.machines.families import FAMILIES
+from benchmarks.machines.lacks import effects
 from benchmarks.machines.machine import record
-from benchmarks.machines.model import Model, Rng, log_uniform
+from benchmarks.machines.model import Model
 from benchmarks.machines.spread import drawn, spreads
-from benchmarks.machines.strength import Yardstick, find_size
 from flexarm_env import Arm, Recording
 from flexarm_env.arm import short_name
 
-#: Kinds of cases, in turn; effects of each.
+#: Kinds of cases, in turn.
 KINDS = (
     "one",
     "two",
@@ -39,13 +38,8 @@ KINDS = (
     "outside",
     "one",
 )
-COUNTS = {"one": 1, "two": 2, "three": 3, "sensor": 1, "outside": 1, "null": 0}
-#: Excess error over the noise that each effect alone would leave, and the least that it must add beside the others.
-STRENGTHS, LEAST = (3.0, 60.0), 1.5
 #: Share of the nulls in which the constants are right, too.
 EXACT = 0.3
-#: Draws of effects for one machine before another is drawn.
-TRIES = 8
 
 
 @dataclass(frozen=True)
@@ -148,59 +142,3 @@ def case(seed: int, index: int) -> Case:
         if hidden is not None:
             settings = [sized.settings(machine) for sized in hidden]
             return Case(key, model, machine, hidden, planned, [record(machine, run, settings) for run in planned])
-
-
-def effects(draw: Rng, machine: Model, planned: tuple[Run, ...], kind: str) -> tuple[Sized, ...] | None:
-    """Draw the effects that the model of a machine lacks; None where it has none of that kind that shows."""
-    if not COUNTS[kind]:
-        return ()
-    names = possible(machine, kind)
-    yard = Yardstick(machine, planned)
-    for _ in range(TRIES):
-        chosen = [str(name) for name in draw.permutation(names)[: COUNTS[kind]]]
-        if len(chosen) < COUNTS[kind] or not fit_together(chosen):
-            continue
-        sized = [_sized(draw, yard, name) for name in chosen]
-        found = tuple(one for one in sized if one is not None)
-        if len(found) == len(sized) and _differ(yard, found):
-            return found
-    return None
-
-
-def possible(machine: Model, kind: str) -> list[str]:
-    """List the effects of a kind that a machine can have and its model lacks."""
-    arm = machine.arm
-    pools: Mapping[str, Mapping[str, Hidden]] = {"outside": OUTSIDE, "sensor": SENSORS, "one": PLANT}
-    found = []
-    for name, hidden in pools.get(kind, CATALOGUE).items():
-        effect = name.partition(".")[0]
-        if effect in arm.known:
-            modified = arm.known[effect].modifies
-            if effect in arm.effects or not arm.can_have(effect) or (modified and modified not in arm.effects):
-                continue
-        if hidden.possible(machine):
-            found.append(name)
-    return found
-
-
-def fit_together(names: list[str]) -> bool:
-    """Whether effects lie in different parts of a machine, and the rig can combine them."""
-    parts = [(CATALOGUE | OUTSIDE)[name].part for name in names]
-    named = [part for part in parts if part]
-    # the rig separates the motor's share of the friction of the model only
-    splits = "gears" in named and bool({"viscous", "coulomb", "stiction", "cogging"} & set(names))
-    return len(set(named)) == len(named) and not splits
-
-
-def _sized(draw: Rng, yard: Yardstick, name: str) -> Sized | None:
-    """Draw an effect's details and strength, and find its size."""
-    hidden = (CATALOGUE | OUTSIDE)[name]
-    sign = float(draw.choice([-1.0, 1.0])) if hidden.signed else 1.0
-    largest = Sized(name.partition(".")[0], hidden, sign * hidden.largest(yard.machine), draw_details(draw, hidden, yard.machine))
-    return find_size(yard, largest, log_uniform(draw, *STRENGTHS))
-
-
-def _differ(yard: Yardstick, found: tuple[Sized, ...]) -> bool:
-    """Whether each of several effects shows beside the others."""
-    signatures = [yard.signature(sized) for sized in found] if len(found) > 1 else []
-    return all(yard.left(own, signatures[:i] + signatures[i + 1 :]) >= LEAST for i, own in enumerate(signatures))

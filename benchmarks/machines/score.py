@@ -8,11 +8,12 @@ from typing import Any
 
 from benchmarks.hidden_effects.score import Figure, coverage, is_right, is_right_or_twin, median, merge_twins, share, verdict_in
 from benchmarks.hidden_effects.truth import holds
+from benchmarks.machines.method import FAILED
 
 Answer = dict[str, Any]
 
-#: Kinds with one effect that the catalogue holds; verdicts that find fault with a machine.
-SINGLE, ALARMS = ("one", "sensor"), ("effects", "partly", "unknown", "recordings")
+#: Kinds with one effect that the catalogue holds; verdicts that are wrong where nothing is missing.
+SINGLE, ALARMS = ("one", "sensor"), ("effects", "partly", "unknown", "recordings", FAILED)
 
 
 def is_honest(answer: Answer) -> bool:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from benchmarks.hidden_effects.score import Figure
 from benchmarks.hidden_effects.table import against_goals, made_by, origin
-from benchmarks.machines.cases import COUNTS
+from benchmarks.machines.lacks import COUNTS
 from benchmarks.machines.score import Answer, figures, is_solved
 from flexarm_env.files import write_whole
 

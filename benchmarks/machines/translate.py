@@ -16,8 +16,8 @@ GEAR_DAMPING, STIFF_GEARS = 5e-4, 960.0
 #: Steps of the integrator [s], each a part of those after it and of every sample; largest phase that the fastest part of a
 #: machine may turn in one.
 STEPS, PHASE = (1e-5, 2e-5, 4e-5), 0.15
-#: Fastest vibration of a beam of n elements over its lowest, over n²; found at 2 to 4 elements on hubs of all weights.
-HIGHEST = 24.0
+#: Fastest vibration of a beam of n finite elements over its lowest, over n²: 15.5 to 16.9 for 2 to 4 elements on any hub.
+HIGHEST = 17.0
 
 
 def settings(values: Values, volts: bool) -> Settings:

@@ -10,13 +10,17 @@ import pytest
 
 from benchmarks.hidden_effects.run import run
 from benchmarks.machines import table
-from benchmarks.machines.cases import COUNTS, KINDS, Key, case, fit_together, keys, possible
-from benchmarks.machines.catalogue import CATALOGUE, OUTSIDE
+from benchmarks.machines.cases import KINDS, Key, case, keys
+from benchmarks.machines.catalogue import CATALOGUE
 from benchmarks.machines.effects import Sized, draw_details
 from benchmarks.machines.experiments import runs
 from benchmarks.machines.families import FAMILIES
+from benchmarks.machines.lacks import COUNTS, fit_together, possible
+from benchmarks.machines.machine import settings
+from benchmarks.machines.method import by_diagnosis_or_failure
+from benchmarks.machines.outside import OUTSIDE
 from benchmarks.machines.score import figures, intervals, is_honest, is_solved
-from benchmarks.machines.spread import drawn, spreads
+from benchmarks.machines.spread import drawn, spreads, with_values
 from benchmarks.machines.strength import Yardstick, find_size
 from flexarm_env import Arm
 
@@ -113,6 +117,17 @@ def test_effects_of_one_part_are_not_drawn_together():
     assert fit_together(["dead_zone", "cable_stiffness"])
 
 
+@pytest.mark.parametrize("family", ["rigid_torque", "elastic_joint"])
+def test_several_kinds_of_friction_add_up(family):
+    model = next(m for m in (FAMILIES[family](np.random.default_rng(seed)) for seed in range(99)) if not m.arm.effects)
+    hidden = {"viscous": 0.3, "coulomb": 0.2}
+    found = settings(model, [Sized(name, CATALOGUE[name], size).settings(model) for name, size in hidden.items()])
+    both = with_values(model, {"effects.viscous.coefficient": 0.3, "effects.coulomb.torque": 0.2})
+    assert found == settings(both)
+    assert found["taf"] + found["gear"] * found["tmf"] == pytest.approx(0.2)
+    assert found["bs"] + found["gear"] ** 2 * found["bm"] == pytest.approx(0.3)
+
+
 def test_a_model_lacks_what_is_hidden():
     for seed in range(16):
         draw = np.random.default_rng(seed)
@@ -173,6 +188,7 @@ def test_two_effects_are_both_named_or_the_rest_is_admitted(hidden, named, verdi
         ("null", [], "nothing_missing", True),
         ("null", [], "recordings", False),
         ("null", [], "unknown", False),
+        ("null", [], "failed", False),
         ("outside", [], "unknown", True),
         ("outside", ["viscous"], "partly", True),
         ("outside", ["viscous"], "effects", False),
@@ -203,6 +219,15 @@ def test_the_table_has_figures_families_and_misses(tmp_path):
     assert "| screw | 0 of 1 | 1 of 1 |" in text
     assert "| x | screw | payload, coulomb | 3.0, 3.0 | effects | viscous | 9 → 1 |" in text
     assert json.loads((tmp_path / "table.json").read_text())["cases"] == 2
+
+
+def test_a_diagnosis_that_fails_is_an_answer():
+    made = by_diagnosis_or_failure(Arm.load("thesis"), [])
+    assert made["verdict"] == "failed"
+    assert made["message"].startswith("InputError: ")
+    failed = answer("one", ["payload"], []) | {"found": made}
+    assert not is_solved(failed)
+    assert "| x | screw | payload | 3.0 | failed |" in "\n".join(table.misses([failed]))
 
 
 def test_a_stopped_run_resumes(tmp_path):

@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.machines.cases import possible
 from benchmarks.machines.catalogue import CATALOGUE
 from benchmarks.machines.effects import Sized, draw_details
 from benchmarks.machines.experiments import runs
 from benchmarks.machines.families import FAMILIES
+from benchmarks.machines.lacks import possible
 from benchmarks.machines.machine import record, shown
 from benchmarks.machines.spread import drawn
 from flexarm_env import simulate
