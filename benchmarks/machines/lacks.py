@@ -17,6 +17,8 @@ COUNTS = {"one": 1, "two": 2, "three": 3, "sensor": 1, "outside": 1, "null": 0}
 STRENGTHS, LEAST = (3.0, 60.0), 1.5
 #: Draws of effects for one machine before another is drawn.
 TRIES = 8
+#: Share of the models without friction and with several effects missing that lack dry friction.
+DRY = 0.5
 
 
 def effects(draw: Rng, machine: Model, planned: tuple[Run, ...], kind: str) -> tuple[Sized, ...] | None:
@@ -26,7 +28,7 @@ def effects(draw: Rng, machine: Model, planned: tuple[Run, ...], kind: str) -> t
     names = possible(machine, kind)
     yard = Yardstick(machine, planned)
     for _ in range(TRIES):
-        chosen = [str(name) for name in draw.permutation(names)[: COUNTS[kind]]]
+        chosen = _chosen(draw, names, COUNTS[kind])
         if len(chosen) < COUNTS[kind] or not fit_together(chosen):
             continue
         sized = [_sized(draw, yard, name) for name in chosen]
@@ -34,6 +36,14 @@ def effects(draw: Rng, machine: Model, planned: tuple[Run, ...], kind: str) -> t
         if len(found) == len(sized) and _differ(yard, found):
             return found
     return None
+
+
+def _chosen(draw: Rng, names: list[str], count: int) -> list[str]:
+    """Choose effects; of several that a model without friction lacks, one is often the friction."""
+    mixed = [str(name) for name in draw.permutation(names)]
+    if count > 1 and "coulomb" in mixed and draw.random() < DRY:
+        mixed = ["coulomb", *(name for name in mixed if name != "coulomb")]
+    return mixed[:count]
 
 
 def possible(machine: Model, kind: str) -> list[str]:
