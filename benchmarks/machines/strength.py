@@ -1,7 +1,7 @@
 """How strongly an effect shows: the error over the noise that it leaves once the constants have been fitted, all on the rig.
 
 The error in windows of 1 s is what a diagnosis decides on. Here a window begins with the hub where the machine has it: from the
-difference of two runs its angle and speed at the start of each window are taken out.
+difference of two runs the motion is taken out that follows from its angle and speed at the start of each window.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import expm
 
 from benchmarks.machines.effects import Sized
 from benchmarks.machines.experiments import Run
@@ -21,7 +22,8 @@ from benchmarks.machines.spread import spreads, with_values
 
 Floats = NDArray[np.float64]
 
-WINDOW = 1.0
+#: Length of a window, and of the part of it over which the state that it begins with is estimated [s].
+WINDOW, START = 1.0, 0.15
 #: Samples per second that are compared at most [Hz]; share of a prior's standard deviation by which a constant is moved.
 RATE, STEP = 100.0, 0.3
 #: Relative tolerance of a strength; largest number of trials; weakest size that is tried over the largest.
@@ -64,18 +66,19 @@ class Yardstick:
         return np.concatenate(parts)
 
     def _restart(self, change: Floats, speed: Floats, rate: float) -> None:
-        """Take out of a difference (samples, signals), in each window, the hub's angle and speed at its start."""
-        ratio = self.machine.values["drive.gear_ratio"]
-        length = round(WINDOW * rate)
+        """Take out of a difference (samples, signals), in each window, the motion that its hub begins with."""
+        signals, ratio = list(self.machine.arm.sensors), self.machine.values["drive.gear_ratio"]
+        length, first = round(WINDOW * rate), round(START * rate)
+        carried = carried_on(self.machine, length, rate)
+        means = carried[:first].mean(axis=0)
         for start in range(0, len(change), length):
-            window = slice(start, start + length)
-            since = np.arange(len(change[window])) / rate
-            first = change[start].copy()
-            for column, signal in enumerate(self.machine.arm.sensors):
-                if signal == "arm_angle":
-                    change[window, column] -= first[column] + speed[start] * since
-                elif signal == "motor_speed":
-                    change[window, column] -= speed[start] * ratio
+            window = change[start : start + length]
+            angle = window[:first, signals.index("arm_angle")].mean()
+            begin = np.linalg.solve(means, [angle, speed[start : start + first].mean()])
+            motion = carried[: len(window)] @ begin
+            window[:, signals.index("arm_angle")] -= motion[:, 0]
+            if "motor_speed" in signals:
+                window[:, signals.index("motor_speed")] -= motion[:, 1] * ratio
 
     @cached_property
     def constants(self) -> Floats:
@@ -97,6 +100,20 @@ class Yardstick:
         priors = np.diag(np.r_[np.ones(self.constants.shape[1]), np.zeros(free.shape[1])])
         moves = np.linalg.lstsq(np.vstack([columns, priors]), np.r_[difference, np.zeros(len(priors))])[0]
         return float(np.sqrt(np.mean((difference - columns @ moves) ** 2)))
+
+
+def carried_on(machine: Model, count: int, rate: float) -> Floats:
+    """Compute angle and speed (count, 2, 2) of a rigid hub left to itself, from a unit of angle and from one of speed."""
+    values = machine.values
+    damping = values.get("effects.viscous.coefficient", 0.0)
+    if machine.arm.input == "voltage":
+        damping += (values["drive.gear_ratio"] * values["drive.torque_constant"]) ** 2 / values["drive.resistance"]
+    stiffness = values.get("effects.base_tilt.torque", 0.0)
+    step = expm(np.array([[0.0, 1.0], [-stiffness / machine.inertia, -damping / machine.inertia]]) / rate)
+    found = [np.eye(2)]
+    while len(found) < count:
+        found.append(step @ found[-1])
+    return np.stack(found)
 
 
 def find_size(yard: Yardstick, sized: Sized, wanted: float) -> Sized | None:

@@ -21,7 +21,7 @@ from benchmarks.machines.method import by_diagnosis_or_failure
 from benchmarks.machines.outside import OUTSIDE
 from benchmarks.machines.score import figures, intervals, is_honest, is_solved
 from benchmarks.machines.spread import drawn, spreads, with_values
-from benchmarks.machines.strength import Yardstick, find_size
+from benchmarks.machines.strength import Yardstick, carried_on, find_size
 from flexarm_env import Arm
 
 #: A place of each kind among the first cases.
@@ -108,6 +108,23 @@ def test_a_constant_that_is_off_within_its_prior_leaves_nothing():
     assert np.sqrt(np.mean(own**2)) > 10.0
     assert yard.left(own) < 0.05
     assert yard.left(own, [own]) < 1e-6
+
+
+def test_a_hub_left_to_itself_swings_by_its_weight_and_coasts_against_its_motor():
+    def free(family, drive):
+        models = (FAMILIES[family](np.random.default_rng(seed)) for seed in range(99))
+        return next(m for m in models if m.arm.input == drive and "viscous" not in m.arm.effects)
+
+    link = free("vertical", "current")
+    pulse = math.sqrt(link.values["effects.base_tilt.torque"] / link.inertia)
+    time = np.arange(100) / 100.0
+    swing = carried_on(link, 100, 100.0)
+    np.testing.assert_allclose(swing[:, 0, 0], np.cos(pulse * time), atol=1e-9)
+    np.testing.assert_allclose(swing[:, 0, 1], np.sin(pulse * time) / pulse, atol=1e-9)
+    axis = free("rigid_voltage", "voltage")
+    drive = axis.values
+    own = (drive["drive.gear_ratio"] * drive["drive.torque_constant"]) ** 2 / drive["drive.resistance"]
+    np.testing.assert_allclose(carried_on(axis, 100, 100.0)[:, 1, 1], np.exp(-own / axis.inertia * time), atol=1e-9)
 
 
 def test_effects_of_one_part_are_not_drawn_together():
