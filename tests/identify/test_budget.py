@@ -14,9 +14,10 @@ from flexarm_env import Arm
 from flexarm_env.experiments.simulate import simulate
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.conclude import conclude
-from flexarm_env.identify.explain.budget import Budget, budget, budget_notes, percent, rest_notes, torque_notes
+from flexarm_env.identify.explain.budget import Budget, budget, budget_notes, rest_notes, torque_notes
 from flexarm_env.identify.explain.error_steps import ErrorStep, error_steps
 from flexarm_env.identify.explain.unexplained_torque import unexplained_torque
+from flexarm_env.identify.percent import percent
 from flexarm_env.identify.replay.dataset import Dataset, prepare
 from flexarm_env.identify.replay.error_measure import Score, SignalError
 from flexarm_env.identify.select.model import judge

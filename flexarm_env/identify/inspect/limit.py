@@ -6,7 +6,8 @@ import numpy as np
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.fault import Fault
-from flexarm_env.identify.inspect.report import fault, percent, quantity
+from flexarm_env.identify.inspect.report import fault, quantity
+from flexarm_env.identify.percent import percent
 from flexarm_env.identify.settings import Inspecting
 from flexarm_env.parameters import INPUTS
 from flexarm_env.recordings.recording import Recording

@@ -9,8 +9,9 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.rail_evidence import stands_at
-from flexarm_env.identify.inspect.report import fault, percent
+from flexarm_env.identify.inspect.report import fault
 from flexarm_env.identify.inspect.series import Series
+from flexarm_env.identify.percent import percent
 from flexarm_env.identify.settings import Inspecting
 from flexarm_env.recordings.columns import UNITS
 from flexarm_env.recordings.recording import Recording

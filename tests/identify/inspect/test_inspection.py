@@ -32,7 +32,7 @@ def test_a_clipped_gage_stands_at_its_extreme(thesis, square):
     share = np.mean(np.abs(clipped) == 1.5)
     assert (fault.kind, fault.signal, fault.value, fault.unit) == ("rail", "strain_base", 1.5, "V")
     assert fault.share == pytest.approx(share)
-    assert f"{100 * share:.2g} % of the rows" in fault.message
+    assert f"{100 * share:.0f} % of the rows" in fault.message
     assert tomllib.loads(fault.hint) == {"strain_base": {"range": ["-1.5 V", "1.5 V"]}}
 
 
