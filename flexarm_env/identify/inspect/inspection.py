@@ -126,7 +126,8 @@ def reading_faults(arm: Arm, recording: Recording, settings: Settings = SETTINGS
     """Find the faults of a recording that its readings show without a model, and mend them in memory."""
     faults: list[Fault] = []
     for check in CHECKS:
-        found = check(recording, arm, settings.inspecting)
+        counted = {one.signal for one in faults if one.kind == "wrap"}
+        found = [one for one in check(recording, arm, settings.inspecting) if one.kind != "rail" or one.signal not in counted]
         faults += found
         recording = mended(recording, found)
     return faults, recording

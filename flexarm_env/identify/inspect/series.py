@@ -61,8 +61,10 @@ class Series:
         return float(np.mean(self.changes[1:] * self.changes[:-1] < 0.0)) if len(self) > 2 else 0.0
 
     def runs(self) -> tuple[Integers, Integers]:
-        """Find stretches of equal readings; return the index of the first reading of each, and their lengths."""
-        starts = np.flatnonzero(np.r_[True, self.changes != 0.0]).astype(np.int64)
+        """Find stretches of equal readings without a gap; return the index of the first reading of each, and their lengths."""
+        steps = np.diff(self.rows)
+        gaps = steps > 2 * np.median(steps) if len(steps) else steps > 0
+        starts = np.flatnonzero(np.r_[True, (self.changes != 0.0) | gaps]).astype(np.int64)
         return starts, np.diff(np.r_[starts, len(self)]).astype(np.int64)
 
     def stands_still(self, rows: Integers, numbers: Inspecting) -> bool:
