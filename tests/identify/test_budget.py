@@ -177,7 +177,7 @@ def test_the_unexplained_torque_is_that_of_the_missing_effects():
     complete = nominal
     for name, values in TRUE.items():
         complete = complete.with_effect(name, **values)
-    missing, rest = (unexplained_torque(arm, recordings) for arm in (nominal, complete))
+    missing, rest = (unexplained_torque(*prepare(arm, recordings)) for arm in (nominal, complete))
     assert missing == pytest.approx(np.hypot(0.05, 0.02), rel=0.1)
     assert rest < 0.3 * missing
 

@@ -64,7 +64,11 @@ class Overview:
 
 
 def overview(
-    arm: Arm, recordings: Sequence[Recording], progress: ProgressCallback | None = None, settings: Settings = SETTINGS
+    arm: Arm,
+    recordings: Sequence[Recording],
+    progress: ProgressCallback | None = None,
+    settings: Settings = SETTINGS,
+    inspection: Inspection | None = None,
 ) -> Overview:
     """Inspect recordings, and estimate what they can show of an arm.
 
@@ -73,13 +77,14 @@ def overview(
         recordings: of the machine.
         progress: called with the share done and a text.
         settings: numbers of the method.
+        inspection: of these recordings, if they were inspected before.
 
     Raises:
         InputError: for recordings that do not fit the arm.
     """
     signals, limits = Progress.to(progress).split(1, 19)
     signals.at(0.0, "signals")
-    inspection = inspect_recordings(arm, recordings, settings)
+    inspection = inspect_recordings(arm, recordings, settings) if inspection is None else inspection
     reduced, dataset = prepare(arm, recordings, settings)
     notes, _ = preflight(dataset)
     return Overview(arm, tuple(recordings), inspection, excitation_of(reduced, dataset, limits), tuple(notes))

@@ -34,6 +34,8 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
     first, conditions = _preamble(lines, skip)
     header, body = _header(lines, first, layout)
     rows = [row for row in range(body, len(lines)) if not is_blank(lines[row], layout.delimiter)]
+    while rows and lines[rows[-1]].lstrip().startswith("#"):
+        _add_remark(lines, rows.pop(), conditions)
     return replace(read_rows([lines[row] for row in rows], rows, header, body, layout), conditions=conditions)
 
 
@@ -124,11 +126,16 @@ def _preamble(lines: Sequence[str], skip: int) -> tuple[int, dict[str, float]]:
         line = lines[row].strip()
         if not line.startswith("#") and not is_blank(lines[row]):
             return row, conditions
-        try:
-            add_condition(line, conditions)
-        except InputError as error:
-            raise InputError(f"row {row + 1}: {error}") from None
+        _add_remark(lines, row, conditions)
     raise InputError("has no header row; write one such as 'time [s],current [A],arm_angle [rad]'")
+
+
+def _add_remark(lines: Sequence[str], row: int, conditions: dict[str, float]) -> None:
+    """Add the condition that a remark states."""
+    try:
+        add_condition(lines[row].strip(), conditions)
+    except InputError as error:
+        raise InputError(f"row {row + 1}: {error}") from None
 
 
 def _header(lines: Sequence[str], first: int, layout: ColumnMap) -> tuple[list[str], int]:
