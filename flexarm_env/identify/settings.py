@@ -716,9 +716,6 @@ class Inspecting:
     """How the readings of recordings are inspected before any model is replayed."""
 
     rounding: float = tuned(1e-9, "A change below this share of a signal's range is none.", "rounding of decimals to floats")
-    from_second_differences: float = tuned(
-        0.60527, "Standard deviation over the median absolute second difference.", "white normal noise: 1/(0.67449 √6)"
-    )
     from_rounding: float = tuned(0.28868, "Standard deviation of rounding over the step.", "uniform distribution: 1/√12")
     usual: float = tuned(
         0.95, "Quantile of a signal's changes that stands for its usual ones.", "leaves room for spikes in 2 % of the rows"
@@ -774,6 +771,8 @@ class Inspecting:
         "Share of readings at which a signal turns back, from which it counts as noisy.",
         "sound recordings with noise: 0.10 and more; encoders of EMPS and CU Boulder: 0.0005 and less",
     )
+    wide_noise: float = tuned(0.8, "Noise above this multiple of the step has a tail of several steps.", "normal distribution")
+    many_at_rail: int = tuned(50, "Readings from which the tail of such noise has ten times as many a step before.", "the same")
     piled_up: float = tuned(4.0, "Surplus of readings at a rail over those a step before it, in standard deviations.", UNHARMED)
     cut_slope: float = tuned(1.5, "Slope into a rail, in steps per sample.", UNHARMED)
     near_zero: float = tuned(0.02, "A level below this share of the range is that of rest.", UNHARMED)
@@ -870,9 +869,9 @@ class MotionFaults:
     shortest_step: float = tuned(0.1, "Such a step is shortened to no less than this share of it.", FAULTY_RUNS)
     known_factor: float = tuned(0.02, "Logarithm of the ratio to a known number within which a factor is named by it.", "2 %")
     likely_factor: float = tuned(
-        0.1,
+        0.15,
         "The same where constants of the model change the factor, too.",
-        "machines with constants 4 % off on either side: the factor of an only signal is then up to 7 % off",
+        "machines with constants 4 % off on either side: the factor of an only signal is then up to 12 % off",
     )
 
 

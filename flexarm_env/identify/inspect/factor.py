@@ -118,5 +118,7 @@ def _of_one_signal(evidence: Evidence) -> list[Fault]:
         if judged and alike and max(gains) < numbers.plausible * min(gains):
             nearest = min(abs(math.log(now.gain / gain)) for gain in gains)
             if nearest > math.log(numbers.far_apart):
-                found.append(factor_fault(evidence, signal, _rough_size(evidence, signal), roughly=True))
+                found.append(
+                    factor_fault(evidence, signal, _rough_size(evidence, signal), roughly=not is_relative(evidence, signal))
+                )
     return found

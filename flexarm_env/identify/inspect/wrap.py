@@ -9,19 +9,19 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.report import fault, shown
-from flexarm_env.identify.inspect.series import Floats, Integers, Series
+from flexarm_env.identify.inspect.series import Floats, Inspected, Integers, Series
 from flexarm_env.identify.settings import Inspecting
 from flexarm_env.recordings.columns import UNITS
-from flexarm_env.recordings.recording import Recording
 
 _TURN = 2 * math.pi
 
 
-def wrap(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
+def wrap(inspected: Inspected, arm: Arm, numbers: Inspecting) -> list[Fault]:
     """Find signals that jump by their whole range, and by the same at each jump."""
+    recording = inspected.recording
     found = []
     for signal in recording.signals:
-        series = Series.of(recording, signal, numbers)
+        series = inspected.series(signal, numbers)
         steps, modulus = wraps(series, UNITS[signal] == "rad", numbers)
         if modulus:
             times = "once" if len(steps) == 1 else f"{len(steps)} times"
