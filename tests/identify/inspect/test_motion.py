@@ -283,7 +283,10 @@ def test_a_lag_of_all_signals_is_exact_though_the_constants_are_not(arm, lag):
     assert all(one.value == pytest.approx(lag, rel=CLOSE) for one in found)
 
 
-@pytest.mark.parametrize(("arm", "signal", "factor"), [("cu-flexible", "tip_deflection", 1.9), ("thesis", "strain_mid", 0.55)])
+@pytest.mark.parametrize(
+    ("arm", "signal", "factor"),
+    [("cu-flexible", "tip_deflection", 1.9), ("thesis", "strain_mid", 0.55), ("thesis", "strain_mid", 6.3)],
+)
 def test_a_factor_of_a_beam_s_signal_is_exact_though_the_constants_are_not(arm, signal, factor):
     runs = machine_of(arm, **OFF, **BEAM_OFF)
     assert motion_faults(Arm.load(arm), runs) == []
