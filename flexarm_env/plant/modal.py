@@ -20,6 +20,8 @@ from flexarm_env.plant.structure import (
 )
 
 HUB_STUCK, MOTOR_STUCK, GEAR_OPEN = 1, 2, 4
+#: A rate of decay [1/s] below this is none: an eigenvalue so near to 0 has an eigenvector that no float tells from that of 0.
+SLOWEST_DECAY = 1e-16
 
 
 @dataclass
@@ -91,7 +93,8 @@ def _dynamics(model: LinearModel, free: Matrix, stiffness: Matrix, damping: Matr
     pull = _clean(free.T @ (stiffness @ free), stiffness)
     rows = slice(positions, 2 * positions)
     dynamics[..., rows, :positions] = -inverse @ pull
-    dynamics[..., rows, rows] = -(inverse @ free.T) @ (damping @ free)
+    decay = -(inverse @ free.T) @ (damping @ free)
+    dynamics[..., rows, rows] = np.where(np.abs(decay) < SLOWEST_DECAY, 0.0, decay)
     dynamics[..., rows, 2 * positions :] = (inverse @ free.T) @ model.from_extra
     into_extra = model.extra_from_motion
     dynamics[..., 2 * positions :, :positions] = _clean(into_extra[..., :size] @ free, into_extra)
