@@ -19,6 +19,8 @@ from flexarm_env.errors import InputError
 from flexarm_env.files import write_whole
 
 VARIABLE = "FLEXARM_CACHE"
+#: Of a module, of what Python compiles of it, and of numba's indices and machine code.
+SUFFIXES = (".py", ".pyc", ".nbi", ".nbc")
 
 
 def cache_folder() -> Path:
@@ -99,12 +101,8 @@ def _list(folder: Path, name: str) -> Path:
 
 def _files(folder: Path, name: str) -> list[Path]:
     """List the module and what was compiled of it."""
-    compiled = (folder / "__pycache__").glob(f"{name}.*")
-    return [
-        path
-        for path in (folder / f"{name}.py", *sorted(compiled))
-        if path.suffix in (".py", ".pyc", ".nbi", ".nbc") and path.is_file()
-    ]
+    every = (folder / f"{name}.py", *sorted((folder / "__pycache__").glob(f"{name}.*")))
+    return [path for path in every if path.suffix in SUFFIXES and path.is_file()]
 
 
 def _digest(path: Path) -> str:
