@@ -63,10 +63,10 @@ def read_arm(path: Path, sound: Sound) -> object:
 
 
 def read_policy(path: Path, sound: Sound) -> object:
-    """Read a policy, and build the agent of it."""
+    """Read a policy."""
     from agents.learning.artefact import Artefact
 
-    return Artefact.load(path).agent()
+    return Artefact.load(path)
 
 
 READERS: Mapping[str, Reader] = {
