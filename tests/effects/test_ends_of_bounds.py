@@ -92,3 +92,10 @@ def test_commands_beyond_any_drive_are_refused_with_their_cause():
     absurd = type(run).from_arrays("absurd", run.time, "current", np.full(len(run), 1e7), run.signals)
     with pytest.raises(InputError, match=r"absurd: .* under commands of up to 1e\+07 A \(limit 5 A\); is a unit wrong"):
         simulate(arm, absurd)
+
+
+@pytest.mark.parametrize("inertia", [0.0, 5e-324, 1e-200])
+def test_an_arm_without_inertia_is_refused(inertia):
+    arm = Arm.load("cu-rigid").with_values({"hub.inertia": inertia})
+    with pytest.raises(InputError, match=r"has no inertia, .*raise hub\.inertia"):
+        simulate(arm, "pulse", duration=0.1, rate=200.0)
