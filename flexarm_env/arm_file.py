@@ -12,6 +12,7 @@ from flexarm_env.effects import Catalogue
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import read_toml, write_whole
 from flexarm_env.parameters import DEFAULTS, INPUTS, SECTIONS, Parameter, check_bounds
+from flexarm_env.recordings.messages import file_error
 from flexarm_env.sensors import known_sensors
 from flexarm_env.units import quantity
 
@@ -62,7 +63,7 @@ def read_arm(kind: type[Arm], source: str | Path, known: Catalogue) -> Arm:
     try:
         return arm_from_table(kind, table, path.stem, known)
     except InputError as error:
-        raise InputError(f"{path}: {error}") from None
+        raise file_error(path, error) from None
 
 
 def arm_from_table(kind: type[Arm], table: Mapping[str, Any], name: str, known: Catalogue) -> Arm:
