@@ -80,7 +80,8 @@ def _counts(structure: Structure, model: LinearModel, modes: Sequence[Mode], poi
     n = np.zeros(at.COUNTS, dtype=np.int64)
     bodies = 2 if structure.separate_motor else 1
     n[at.BODIES], n[at.COORDINATES], n[at.POINTS] = bodies, len(model.names), points
-    n[at.COUPLED] = bodies == 2 or np.any(np.not_equal(structure.hub_stiffness, 0.0))
+    holds = np.any(np.not_equal(structure.hub_stiffness, 0.0)) or np.any(model.extra_from_motion[..., 0])  # a filtered angle
+    n[at.COUPLED] = bodies == 2 or holds
     n[at.VARYING] = varying
     n[at.STEADY_BODIES] = 0 if varying else bodies
     n[at.BLOCKS] = max(mode.c0.shape[-1] for mode in modes)

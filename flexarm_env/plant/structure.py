@@ -27,6 +27,10 @@ STIFF_GEARS, RIGID_GEARS = 960.0, 48e3
 LEAST_ROOT_SHARE = 1e-3
 
 
+#: A first-order lag below this time constant [s] is none: its response is over within any sample, and its rate leaves no digits.
+SHORTEST_LAG = 1e-9
+
+
 def exceeds(quantity: float | Matrix, limit: float) -> bool:
     """Whether a quantity of an arm, or of every stacked one, lies above a limit."""
     return bool((quantity > limit).all()) if isinstance(quantity, np.ndarray) else quantity > limit
@@ -200,7 +204,7 @@ def _drive(s: Structure, names: list[str], motor: int, mass: Matrix, damping: Ma
     drivers[..., 0, ONE] = s.hub_torque
     torque_per_amp, amps_per_command = s.gear_ratio * s.torque_constant, s.amps_by_command
     amps_per_speed = -torque_per_amp / s.resistance if exceeds(s.resistance, 0.0) else 0.0
-    lagged = exceeds(s.current_lag, 0.0)
+    lagged = exceeds(s.current_lag, SHORTEST_LAG)
     extra = int(lagged)
     model = LinearModel(
         names=names,
@@ -234,7 +238,7 @@ def _sensors(s: Structure, model: LinearModel, coordinates: Coordinates) -> None
     size, arms = len(model.names), model.mass.shape[:-2]
     readings = [_reading(signal, channel, coordinates) for signal, channel in s.sensors.items()]
     filters = [time_constant(reading, channel) for reading, channel in zip(readings, s.sensors.values(), strict=True)]
-    filtered = [i for i, filter in enumerate(filters) if exceeds(filter, 0.0)]
+    filtered = [i for i, filter in enumerate(filters) if exceeds(filter, SHORTEST_LAG)]
     before = model.extra.shape[-1]
     total = before + len(filtered)
     model.extra = _grown(model.extra, total, total)

@@ -14,6 +14,7 @@ from flexarm_env.errors import InputError
 from flexarm_env.experiments.payload import check_payload, plants_by_payload, stated_payload
 from flexarm_env.identify.replay.initial_state import Stretch, find_start
 from flexarm_env.identify.replay.loop import Loop, find_loop
+from flexarm_env.identify.replay.plausible import check_free_motion, check_steps
 from flexarm_env.identify.replay.reading_noise import SensorNoise, find_noise, is_open, with_found_noise
 from flexarm_env.identify.replay.readings import measured_time, share_of
 from flexarm_env.identify.replay.run import Run
@@ -115,7 +116,7 @@ def prepare(
         The arm, with the noise of its sensors, and the recordings.
 
     Raises:
-        InputError: for recordings that do not fit the arm.
+        InputError: for recordings that do not fit the arm, or under whose commands and times it moves beyond any arm.
     """
     if not recordings:
         raise InputError("no recordings: name at least one CSV file or a folder of them")
@@ -125,6 +126,8 @@ def prepare(
     arm = replace(arm, sensors={s: arm.sensors[s] for s in signals})
     for recording in recordings:
         _check(arm, recording, settings.preparation.fewest_samples)
+        check_steps(recording, settings.preparation)
+        check_free_motion(arm, recording, settings.preparation)
     noises = find_noise(arm, recordings)
     if is_open(noises, settings.preparation):
         noises = find_noise(arm, recordings, _replayed(arm, _dataset(arm, recordings, noises, settings)))
