@@ -20,11 +20,11 @@ from flexarm_env.identify.workers import Task, Workers
 IDENTIFY = "flexarm_env.identify"
 #: Functions whose calls are counted, with the CPU time of each call less that of the parts inside it.
 PARTS = {
-    "residual": f"{IDENTIFY}.calibrate.objective:Objective.residual_of",
-    "initial state": f"{IDENTIFY}.replay.initial_state:Stretch.set_fitted_state",
-    "plant": "flexarm_env.plant.plant:Plant.__init__",
-    "observer": f"{IDENTIFY}.replay.observer:physical_gains",
-    "replay": "flexarm_env.plant.plant:Plant.play",
+    "residual": [f"{IDENTIFY}.calibrate.objective:Objective.residual_of"],
+    "initial state": [f"{IDENTIFY}.replay.start_fit:Stretch.fit", f"{IDENTIFY}.replay.start_fit:Stretch.follow"],
+    "plant": ["flexarm_env.plant.plant:Plant.__init__"],
+    "observer": [f"{IDENTIFY}.replay.observer:physical_gains"],
+    "replay": ["flexarm_env.plant.plant:Plant.play"],
 }
 #: Functions that are stages. The innermost counts.
 STAGES = {
@@ -155,8 +155,9 @@ def _replaced(place: str, wrap: Callable[[Callable[..., Any]], Callable[..., Any
 def counting_parts(counts: Counts) -> Iterator[None]:
     """Count parts within a context."""
     with contextlib.ExitStack() as stack:
-        for part, place in PARTS.items():
-            stack.enter_context(_replaced(place, lambda function, part=part: counts.counted(part, function)))
+        for part, places in PARTS.items():
+            for place in places:
+                stack.enter_context(_replaced(place, lambda function, part=part: counts.counted(part, function)))
         yield
 
 

@@ -111,8 +111,10 @@ class WindowErrors:
         for run in dataset.runs_to_replay(held_out):
             rows = ~run.train if held_out else run.train
             plant, first = plants[run.payload], int(np.argmax(rows))
-            windows = window_replay(plant, run, dataset, observers[run.payload], first)
-            both = [run.errors(y, dataset.noise)[rows] for y in (windows, replay(plant, run, dataset))]
+            start = dataset.stretch(run).fit(plant)
+            windows = window_replay(plant, run, dataset, observers[run.payload], first, start)
+            free = replay(plant, run, dataset, start=start)
+            both = [run.errors(y, dataset.noise)[rows] for y in (windows, free)]
             totals += [_squares(errors) for errors in both]
             parts.append((both[0], dataset.noise))
         windows, free = np.sqrt(totals / dataset.readings(held_out))
@@ -158,8 +160,9 @@ class InnovationErrors:
             sigma = sigmas[run.payload]
             if run.readings() < run.measured.size:
                 sigma = innovation_sigmas(plant, run, dataset, own, gains[run.payload])
-            corrected = run.errors(replay(plant, run, dataset, gains[run.payload]), sigma)
-            free = run.errors(replay(plant, run, dataset), dataset.noise)
+            start = dataset.stretch(run).fit(plant)
+            corrected = run.errors(replay(plant, run, dataset, gains[run.payload], start), sigma)
+            free = run.errors(replay(plant, run, dataset, start=start), dataset.noise)
             totals += [_squares(errors[rows]) for errors in (corrected, free)]
             parts.append((corrected[rows], sigmas[run.payload]))
         innovations, free_run = np.sqrt(totals / dataset.readings(held_out))
