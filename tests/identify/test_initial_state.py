@@ -49,7 +49,7 @@ def test_the_speed_at_the_start_is_found_without_a_tachometer() -> None:
 def test_an_arm_that_is_driven_at_once_starts_at_rest() -> None:
     time = np.arange(200) / 500.0
     measured = np.column_stack([4.0 * time**2, 12.0 * time, 2.0 * (1.0 - np.cos(60.0 * time)), 3.0 * (1.0 - np.cos(60.0 * time))])
-    start = find_start(time, measured, SIGNALS, NOISE, SETTINGS.initial_states)
+    start = find_start(time, np.ones(200), measured, SIGNALS, NOISE, SETTINGS.initial_states)
     assert (start.angle, start.speed, start.moving, start.vibrating) == (0.0, 0.0, False, False)
 
 
@@ -57,10 +57,24 @@ def test_an_offset_of_a_gage_is_no_vibration() -> None:
     time = np.arange(200) / 500.0
     draw = np.random.default_rng(0)
     measured = NOISE * draw.standard_normal((200, 4)) + np.array([0.5, 0.0, 0.3, -0.2])
-    start = find_start(time, measured, SIGNALS, NOISE, SETTINGS.initial_states)
+    start = find_start(time, np.ones(200), measured, SIGNALS, NOISE, SETTINGS.initial_states)
     assert start.angle == pytest.approx(0.5, abs=1e-3)
     assert not start.moving
     assert not start.vibrating
+
+
+@pytest.mark.parametrize(("driven_from", "ringing"), [(0.4, 0.0), (0.0, 0.0), (0.4, 0.05)])
+def test_the_beam_of_a_driven_arm_is_no_vibration_at_the_start(driven_from: float, ringing: float) -> None:
+    """A push bends the beam before the hub has left its place; a beam that rings did so before the first command."""
+    time = np.arange(400) / 500.0
+    strain = np.where(time > 0.4, 3.0 * (1.0 - np.cos(60.0 * (time - 0.4))), 0.0) + ringing * np.cos(60.0 * time)
+    angle = 4.0 * np.maximum(time - 0.42, 0.0) ** 2
+    measured = np.column_stack([angle, np.zeros(400), strain, strain])
+    command = np.where(time >= driven_from, 1.0, 0.0)
+    start = find_start(time, command, measured, SIGNALS, NOISE, SETTINGS.initial_states)
+    assert start.vibrating == (driven_from == 0.0 or ringing > 0.0)
+    assert start.samples == (201 if driven_from else 246)
+    assert not start.moving
 
 
 @pytest.mark.parametrize("signals", [SIGNALS, [s for s in SIGNALS if s != "motor_speed"]])

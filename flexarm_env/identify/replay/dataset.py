@@ -181,7 +181,7 @@ def _run(arm: Arm, recording: Recording, noise: Floats, interval: float, setting
     steps, shown = np.diff(time), measured_time(time, measured)
     # Wider than in a simulation, where only rounding counts as even: tables for one interval make replays fast.
     uneven = np.abs(steps - interval).max() > numbers.uneven * interval
-    start = find_start(time, measured, signals, noise, settings.initial_states)
+    start = find_start(time, recording.command, measured, signals, noise, settings.initial_states)
     loop, note = find_loop(arm, recording, signals, start.speed, numbers)
     return Run(
         name=recording.name,

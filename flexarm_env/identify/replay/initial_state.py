@@ -35,23 +35,27 @@ class Start:
     rest: float
 
 
-def find_start(time: Floats, measured: Floats, signals: list[str], noise: Floats, settings: InitialStates) -> Start:
+def find_start(
+    time: Floats, command: Floats, measured: Floats, signals: list[str], noise: Floats, settings: InitialStates
+) -> Start:
     """Read the evidence on the initial state from the first samples: at rest at zero wherever they allow it.
 
     Args:
         time: (samples,) [s], from 0.
+        command: (samples,) [A or V].
         measured: (samples, signals), SI units; NaN where nothing was measured.
         signals: names of the columns.
         noise: (signals,) standard deviations.
         settings: thresholds.
     """
+    undriven = int(np.flatnonzero(np.append(command, 1.0))[0]) + 1  # a sample is taken before its command acts
     begins = np.argmax(~np.isnan(measured), axis=0)
     early = time[begins] <= settings.held_time
     if early.all():
-        found = _start(time, measured, signals, noise, settings)
+        found = _start(time, undriven, measured, signals, noise, settings)
     else:
         known = [signal for signal, is_early in zip(signals, early, strict=True) if is_early]
-        found = _start(time, measured[:, early], known, noise[early], settings)
+        found = _start(time, undriven, measured[:, early], known, noise[early], settings)
     first = begins[[i for i, signal in enumerate(signals) if signal in ("arm_angle", "motor_speed")]].max(initial=0)
     if found.moving and first > 0:  # it may have left since the first sample
         found = replace(found, rest=_angle_at_rest(measured[:1], signals, noise, settings))
@@ -68,12 +72,16 @@ def _angle_at_rest(measured: Floats, signals: list[str], noise: Floats, settings
     return angle if "arm_angle" in signals and abs(angle) >= settings.at_zero * noise[column] else 0.0
 
 
-def _start(time: Floats, measured: Floats, signals: list[str], noise: Floats, settings: InitialStates) -> Start:
-    """Read the evidence on the initial state from signals that were measured at the start."""
+def _start(time: Floats, undriven: int, measured: Floats, signals: list[str], noise: Floats, settings: InitialStates) -> Start:
+    """Read the evidence on the initial state from signals that were measured at the start.
+
+    Of a held hub, the samples before the first command alone count where these are enough: the rest is no motion at the start.
+    """
     interval = time[1] - time[0]
     beam = np.array(["beam" in known_sensors()[s].needs for s in signals], dtype=bool)
     angle, speed, still = _hub(time, measured, signals, noise, settings)
     moving = speed != 0.0
+    still = min(still, undriven) if undriven * interval >= settings.held_time else still
     held = still * interval >= settings.held_time
     if held:
         vibrating = bool(np.any((_scatter(measured[:still]) > settings.vibrates * noise)[beam]))
