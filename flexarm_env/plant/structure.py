@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,9 @@ from flexarm_env.plant.reading import Channel, Coordinates, Reading, time_consta
 #: the side on which the gears touch (−1, 0, 1), and the angles of a held hub and a held motor.
 DRIVERS = ("command", "hub_torque", "motor_torque", "one", "gear_side", "held_hub", "held_motor")
 COMMAND, HUB_TORQUE, MOTOR_TORQUE, ONE, GEAR_SIDE, HELD_HUB, HELD_MOTOR = range(len(DRIVERS))
+
+#: An arm's quantities; signals and the attributes of their channels.
+Key = tuple[tuple[Any, ...], tuple[tuple[Any, ...], ...]]
 
 #: Quantities that arms of one kind have in common.
 WHOLE = ("elements", "sensors")
@@ -64,6 +68,12 @@ class Structure:
     current_lag: float = 0.0
     input_delay: float = 0.0
     sensors: dict[str, Channel] = field(default_factory=dict)
+
+    @property
+    def key(self) -> Key:
+        """All quantities and sensors of one arm, to look up what was computed from them."""
+        *quantities, sensors = vars(self).values()
+        return tuple(quantities), tuple([(signal, *vars(channel).values()) for signal, channel in sensors.items()])
 
     @property
     def separate_motor(self) -> bool:
@@ -133,6 +143,18 @@ class LinearModel:
     settled: Matrix  # (extra, 2 coordinates): filters of accelerations from [q, q̇], of an arm long at constant speed
 
 
+def structure_of(key: Key) -> Structure:
+    """Build the structure of a key anew."""
+    quantities, sensors = key
+    values: tuple[Any, ...] = (*quantities, {signal: Channel(*channel) for signal, *channel in sensors})
+    return Structure(*values)
+
+
+def is_stacked(structure: Structure) -> bool:
+    """Whether a structure holds many arms."""
+    return np.ndim(structure.hub_inertia) > 0
+
+
 def assemble(structure: Structure) -> LinearModel:
     """Build the matrices of an arm, or of many (thesis eqs. 3.9 to 3.14, consistent: see the errata).
 
@@ -141,9 +163,22 @@ def assemble(structure: Structure) -> LinearModel:
 
     Returns:
         Matrices on the coordinates [hub, (motor), (root), v_1, s_1, …]; the motor's angle is that of the arm side.
-        Those of stacked arms are (arms, rows, columns).
+        Those of stacked arms are (arms, rows, columns); those of one arm are kept for the next like it, and read-only.
     """
-    s = structure
+    return _assemble(structure) if is_stacked(structure) else _assemble_one(structure.key)
+
+
+@lru_cache(maxsize=64)
+def _assemble_one(key: Key) -> LinearModel:
+    """Build the matrices of one arm, cached: fits try many arms whose laws alone differ."""
+    model = _assemble(structure_of(key))
+    for quantity in vars(model).values():
+        if isinstance(quantity, np.ndarray):
+            quantity.flags.writeable = False
+    return model
+
+
+def _assemble(s: Structure) -> LinearModel:
     names = ["hub"] + (["motor"] if s.separate_motor else [])
     beam = Beam(s.elements, s.length, s.mass_per_length, s.bending_stiffness) if s.elements else None
     # a beam coordinate stands where its own numbering puts it, the root's slope only if it can turn

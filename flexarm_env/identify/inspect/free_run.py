@@ -137,7 +137,7 @@ def _starts(dataset: Dataset) -> Iterator[Dataset]:
     if not (run.start.moving or run.start.vibrating):
         return
     for column, signal in enumerate(dataset.signals):
-        start = find_start(run.time, run.measured[:, [column]], [signal], dataset.noise[[column]], settings)
+        start = find_start(run.time, run.command, run.measured[:, [column]], [signal], dataset.noise[[column]], settings)
         others = np.full_like(dataset.noise, np.inf)
         others[column] = dataset.noise[column]
         yield replace(dataset, runs=(replace(run, start=start),), noise=others)

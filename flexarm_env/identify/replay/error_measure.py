@@ -111,8 +111,10 @@ class WindowErrors:
         for run in dataset.runs_to_replay(held_out):
             rows = ~run.train if held_out else run.train
             plant, first = plants[run.payload], int(np.argmax(rows))
-            windows = window_replay(plant, run, dataset, observers[run.payload], first)
-            both = [run.errors(y, dataset.noise)[rows] for y in (windows, replay(plant, run, dataset))]
+            start = dataset.stretch(run).fit(plant)
+            windows = window_replay(plant, run, dataset, observers[run.payload], first, start)
+            free = replay(plant, run, dataset, start=start)
+            both = [run.errors(y, dataset.noise)[rows] for y in (windows, free)]
             totals += [_squares(errors) for errors in both]
             parts.append((both[0], dataset.noise))
         windows, free = np.sqrt(totals / dataset.readings(held_out))
