@@ -13,9 +13,11 @@ from typing import Any
 import numpy as np
 
 from benchmarks.hidden_effects.effects import CATALOGUE, CONSTANTS, OUTSIDE, Hidden
-from benchmarks.hidden_effects.machine import Plan, largest_command
+from benchmarks.hidden_effects.machine import Plan, largest_command, record
+from flexarm_env import Arm, Recording
 
 SIZES = Path(__file__).parent / "sizes.json"
+ARM = "thesis-fem"
 STRENGTHS = (1.0, 3.0, 10.0)
 #: Largest relative error of the model's constants, each drawn uniformly.
 WRONG = (0.0, 0.1, 0.3)
@@ -54,6 +56,10 @@ class Case:
     def as_json(self) -> dict[str, Any]:
         """Convert to plain data."""
         return asdict(self)
+
+    def pose(self) -> tuple[dict[str, Any], Arm, list[Recording]]:
+        """Make the case: its plain data, the arm as given and the recordings."""
+        return self.as_json(), Arm.load(ARM), record(self)
 
 
 @lru_cache

@@ -118,15 +118,24 @@ def removed(answer: Answer) -> float:
     return 1.0 - after / before if before > 0.0 else 0.0
 
 
-def _share(what: str, goal: float, answers: Sequence[Answer], test: Callable[[Answer], bool], at_most: bool = False) -> Figure:
+def share(what: str, goal: float, answers: Sequence[Answer], test: Callable[[Answer], bool], at_most: bool = False) -> Figure:
+    """Compute the share of answers that pass a test, against its goal."""
     value = float(np.mean([test(a) for a in answers])) if answers else None
     met = value is not None and (value <= goal if at_most else value >= goal)
     return Figure(what, f"{'≤' if at_most else '≥'} {100 * goal:.0f} %", value, len(answers), met)
 
 
-def _median(what: str, goal: str, values: Sequence[float], meets: Callable[[float], bool], unit: str) -> Figure:
+def median(what: str, goal: str, values: Sequence[float], meets: Callable[[float], bool], unit: str) -> Figure:
+    """Compute the median of values, against its goal."""
     value = float(np.median(values)) if values else None
     return Figure(what, goal, value, len(values), value is not None and meets(value), unit)
+
+
+def coverage(what: str, goal: tuple[float, float], held: Sequence[bool]) -> Figure:
+    """Compute the share of intervals that contain the truth, against its goal."""
+    value = float(np.mean(held)) if held else None
+    words = f"{100 * goal[0]:.0f} to {100 * goal[1]:.0f} %"
+    return Figure(what, words, value, len(held), value is not None and goal[0] <= value <= goal[1])
 
 
 def figures(answers: Iterable[Answer]) -> list[Figure]:
@@ -139,33 +148,24 @@ def figures(answers: Iterable[Answer]) -> list[Figure]:
     sided = [a for a in of("one", 3.0, 10.0) if first(a)]
     solved = [a for a in of("one", 3.0, 10.0) if is_right(a)]
     held = [holds for a in every if a["case"]["kind"] != "outside" for _, holds in covered(a["case"], a["found"])]
-    coverage = float(np.mean(held)) if held else None
     return [
-        _share("right effect first, strength 3", 0.9, of("one", 3.0), is_right),
-        _share("right effect or its exact twin first, strength 3", 0.9, of("one", 3.0), is_right_or_twin),
-        _share("right effect first, strength 10", 0.97, of("one", 10.0), is_right),
-        _share("right class of at most two, strength 3", 0.97, of("one", 3.0), is_in_class),
-        _share("right effect first, strength 1", 0.7, of("one", 1.0), is_right),
-        _share("in the first three, strength 1", 0.9, of("one", 1.0), is_in_first_three),
-        _share("two effects, both right, strength 3", 0.8, of("two", 3.0), both_right),
-        _share("two effects, both right or exact twins, strength 3", 0.8, of("two", 3.0), both_right_or_twins),
-        _share("false alarm on nulls", 0.02, of("null"), verdict_in("effects", "partly", "unknown"), at_most=True),
-        _share("outside the catalogue: flagged", 0.85, of("outside"), verdict_in("unknown", "partly")),
-        _share("outside the catalogue: mislabelled", 0.1, of("outside"), verdict_in("effects"), at_most=True),
-        _share("sensor against plant side", 0.97, sided, right_side),
-        _share("sensor against plant side, without exact twins", 0.97, [a for a in sided if not _is_late(a)], right_side),
-        Figure(
-            "90 % intervals that hold the truth",
-            "87 to 93 %",
-            coverage,
-            len(held),
-            coverage is not None and 0.87 <= coverage <= 0.93,
-        ),
-        _median("excess held-out error removed, median", "≥ 90 %", [removed(a) for a in solved], lambda v: v >= 0.9, "%"),
-        _median(
-            "final held-out error, median", "≤ 1.05", [a["found"]["error"]["final"] for a in solved], lambda v: v <= 1.05, ""
-        ),
-        _median(
+        share("right effect first, strength 3", 0.9, of("one", 3.0), is_right),
+        share("right effect or its exact twin first, strength 3", 0.9, of("one", 3.0), is_right_or_twin),
+        share("right effect first, strength 10", 0.97, of("one", 10.0), is_right),
+        share("right class of at most two, strength 3", 0.97, of("one", 3.0), is_in_class),
+        share("right effect first, strength 1", 0.7, of("one", 1.0), is_right),
+        share("in the first three, strength 1", 0.9, of("one", 1.0), is_in_first_three),
+        share("two effects, both right, strength 3", 0.8, of("two", 3.0), both_right),
+        share("two effects, both right or exact twins, strength 3", 0.8, of("two", 3.0), both_right_or_twins),
+        share("false alarm on nulls", 0.02, of("null"), verdict_in("effects", "partly", "unknown"), at_most=True),
+        share("outside the catalogue: flagged", 0.85, of("outside"), verdict_in("unknown", "partly")),
+        share("outside the catalogue: mislabelled", 0.1, of("outside"), verdict_in("effects"), at_most=True),
+        share("sensor against plant side", 0.97, sided, right_side),
+        share("sensor against plant side, without exact twins", 0.97, [a for a in sided if not _is_late(a)], right_side),
+        coverage("90 % intervals that hold the truth", (0.87, 0.93), held),
+        median("excess held-out error removed, median", "≥ 90 %", [removed(a) for a in solved], lambda v: v >= 0.9, "%"),
+        median("final held-out error, median", "≤ 1.05", [a["found"]["error"]["final"] for a in solved], lambda v: v <= 1.05, ""),
+        median(
             "time of one core for three recordings, median",
             "≤ 120 s",
             [a["cpu_seconds"] for a in every],

@@ -67,11 +67,12 @@ def covered(case: dict[str, Any], found: dict[str, Any]) -> Iterator[tuple[str, 
         if candidate["accepted"] and candidate["effect"] in case["effects"]:
             for key, value in parameters(candidate["effect"], case["settings"]).items():
                 if key in candidate["parameters"]:
-                    yield f"{candidate['effect']}.{key}", _holds(candidate["parameters"][key], value)
+                    yield f"{candidate['effect']}.{key}", holds(candidate["parameters"][key], value)
     for name, (setting, nominal) in CONSTANTS.items():
         if name in found["constants"]:
-            yield name, _holds(found["constants"][name], nominal * case["settings"].get(f"{setting}_x", 1.0))
+            yield name, holds(found["constants"][name], nominal * case["settings"].get(f"{setting}_x", 1.0))
 
 
-def _holds(interval: dict[str, float], value: float) -> bool:
+def holds(interval: dict[str, float], value: float) -> bool:
+    """Whether an interval contains a value."""
     return math.isfinite(value) and interval["low"] <= value <= interval["high"]

@@ -16,6 +16,7 @@ from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.experiments.derivatives import full_path, tangents_of
 from flexarm_env.experiments.payload import check_payload, stated_payload, with_payload
 from flexarm_env.experiments.plans import EXPERIMENTS, plan_of, random_stream
+from flexarm_env.experiments.plausible import check_motion
 from flexarm_env.experiments.rig import Rig
 from flexarm_env.recordings.recording import Recording
 
@@ -86,7 +87,8 @@ def simulate(
         signal's unit over that of the constant.
 
     Raises:
-        InputError: for an input that does not exist or does not fit the arm, or a constant by which there is no derivative.
+        InputError: for an input that does not exist or does not fit the arm, a motion beyond any arm's, or a constant by which
+            there is no derivative.
 
     Examples:
         >>> from flexarm_env import Arm, simulate
@@ -170,6 +172,7 @@ def _recording(
     conditions: dict[str, float],
 ) -> Recording:
     """Record readings (n, signals)."""
+    check_motion(arm, name, time, commands, readings)
     signals = {signal: readings[:, i] for i, signal in enumerate(arm.signals)}
     return Recording.from_arrays(name, time, arm.input, commands, signals, reference, conditions)
 

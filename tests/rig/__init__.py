@@ -1,4 +1,6 @@
-"""An independent truth simulator of the thesis's arm. It shares no code with the package that it tests.
+"""An independent truth simulator of the thesis's arm, and of machines of other sizes.
+
+It shares no code with the package that it tests.
 
 A beam of finite elements in its clamped modes, a rotor and an arm hub joined by a stiff gear mesh, dry friction on
 each of the two with exact sticking, position Verlet at 10 µs, and the sensors' noise and rounding. Driven by the
@@ -20,9 +22,10 @@ import sys
 sys.modules.setdefault("truth_rig", sys.modules[__name__])
 
 from .catalogue import CATALOGUE, EXAMPLES, OUTSIDE  # noqa: E402
+from .experiments import Plan  # noqa: E402
 from .recordings import FLOOR, read_recording, replay, write_case  # noqa: E402
 from .settings import table  # noqa: E402
-from .simulate import SIGNALS, simulate  # noqa: E402
+from .simulate import READINGS, SIGNALS, TRUTHS, perform, simulate  # noqa: E402
 
 __doc__ += table()
 __all__ = [
@@ -30,7 +33,11 @@ __all__ = [
     "EXAMPLES",
     "FLOOR",
     "OUTSIDE",
+    "READINGS",
     "SIGNALS",
+    "TRUTHS",
+    "Plan",
+    "perform",
     "read_recording",
     "replay",
     "simulate",

@@ -43,6 +43,10 @@ class Beam(NamedTuple):
     bend: np.ndarray
 
 
+#: A rigid arm: no modes, one node at the hub.
+NO_BEAM = Beam(np.zeros(0), np.zeros(0), 0.0, 0.0, np.zeros(0), np.zeros((1, 0)), np.zeros(1), np.zeros(1), np.zeros((2, 0)))
+
+
 def element(ei: float, density: float, h: float) -> tuple[np.ndarray, np.ndarray]:
     """Return mass [kg, kg m, kg m²] and stiffness [N/m, N, Nm] of one Hermite element of length `h` [m]."""
     mass = (

@@ -92,4 +92,6 @@ OUTSIDE: dict[str, dict[str, float]] = {
     "amp_hysteresis": {"amp_hyst": 0.3},
     "sticky_spot": {"spot": 0.25},
     "gage_creep": {"creep": 0.12},
+    "end_stop": {"stop": 5.0, "stop_at": 0.4},
+    "motor_saturation": {"sag": 0.01},
 }

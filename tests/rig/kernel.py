@@ -20,6 +20,8 @@ Beam = tuple[np.ndarray, np.ndarray, np.ndarray]  # modes, nodes, shape (nodes, 
 TM, WM, TH, W, LAG, RATE, PLAY, TACH, SMID, SBASE, BASE, BASE_W, DAHL, TIME, CREEP_M, CREEP_B = range(16)
 STATES = 16
 
+CREEP = 1e-100  # [rad/s], moving but slower than any effect of the speed
+
 
 @njit(cache=True)
 def bounded(free: float, impulse: float) -> float:
@@ -30,8 +32,27 @@ def bounded(free: float, impulse: float) -> float:
 
 
 @njit(cache=True)
+def split(speed: float, force: float, sliding: float, static: float, leaving: float, inertia: float, h: float) -> float:
+    """Return the speed [rad/s] of a body after a step of `h` [s], split where the body stands still.
+
+    Args:
+        sliding, static, leaving: dry friction [Nm] at that speed, at rest, and while it leaves.
+    """
+    left = h
+    if speed != 0.0:
+        net = force - math.copysign(sliding, speed)
+        after = speed + h * net / inertia
+        if after * speed >= 0.0:
+            return after
+        left = h + speed * inertia / net
+    if abs(force) <= static:
+        return 0.0
+    return bounded(left * force / inertia, left * leaving / inertia)
+
+
+@njit(cache=True)
 def drive(s: np.ndarray, p: np.void, command: float) -> float:
-    """Return the motor current [A] for a (delayed) command [A]; the amplifier's memory sits in `s`."""
+    """Return the motor current [A] for a (delayed) command [A or V]; the amplifier's memory sits in `s`."""
     i = command
     if p.dead > 0.0:
         i = 0.0 if abs(i) <= p.dead else i - math.copysign(p.dead, i)
@@ -47,6 +68,8 @@ def drive(s: np.ndarray, p: np.void, command: float) -> float:
     if p.rate > 0.0:
         s[RATE] += min(max(i - s[RATE], -p.rate * p.h), p.rate * p.h)
         i = s[RATE]
+    if p.volts > 0.0:
+        i = (i - p.kphi * s[WM]) / p.ra
     if p.lag > 0.0:
         s[LAG] += (i - s[LAG]) * (1.0 - math.exp(-p.h / p.lag))
         i = s[LAG]
@@ -70,6 +93,8 @@ def mesh_torque(s: np.ndarray, p: np.void) -> float:
 def motor_torque(s: np.ndarray, p: np.void, current: float) -> float:
     """Return the electromagnetic and magnetic torque on the rotor [Nm, motor side]."""
     torque = p.kphi * current
+    if p.sag > 0.0:
+        torque *= max(1.0 - p.sag * current * current, 1.0 / 3.0)
     if p.torque_ripple != 0.0:
         torque *= 1.0 + p.torque_ripple * math.sin(p.torque_ripple_n * s[TM])
     if p.cog != 0.0:
@@ -109,12 +134,14 @@ def arm_budget(s: np.ndarray, p: np.void, free: float, load: float) -> float:
 
 @njit(cache=True)
 def outside_torque(s: np.ndarray, p: np.void) -> float:
-    """Return the speed-free torques on the hub [Nm]: constant, cable, tilt (rigid part), hum."""
+    """Return the speed-free torques on the hub [Nm]: constant, cable, tilt (rigid part), hum, end stops."""
     torque = p.bias - p.cable * (s[TH] - p.cable0)
     if p.tilt_torque != 0.0:
         torque -= p.tilt_torque * math.sin(s[TH] - p.tilt_dir)
     if p.hum != 0.0:
         torque += p.hum * math.sin(TWO_PI * p.humf * s[TIME] + p.humphi)
+    if p.stop > 0.0 and abs(s[TH]) > p.stop_at:
+        torque -= p.stop * (s[TH] - math.copysign(p.stop_at, s[TH]))
     return torque
 
 
@@ -147,13 +174,25 @@ def base_motion(s: np.ndarray, p: np.void, torque: float) -> float:
 
 @njit(cache=True)
 def hub_speed(s: np.ndarray, p: np.void, force: float, load: float, scale: float) -> float:
-    """Return the hub's next speed [rad/s] from the force [Nm] on its residual inertia, with its friction."""
+    """Return the hub's next speed [rad/s] from the force [Nm] on its residual inertia, with its friction.
+
+    `p.jk` is that inertia and, of a hub with the motor on it, half a step of linear damping: the trapezoidal rule.
+    """
     if p.dahl > 0.0:
         level = max(arm_budget(s, p, s[W], load) * scale, 1e-9)
         s[DAHL] += p.h * (s[W] - p.dahl * abs(s[W]) * s[DAHL] / level)
-        return s[W] + p.h * (force - p.dahl * s[DAHL]) / p.jr
-    free = s[W] + p.h * force / p.jr
-    return bounded(free, p.h * arm_budget(s, p, free, load) * scale / p.jr)
+        return s[W] + p.h * (force - p.dahl * s[DAHL]) / p.jk
+    if p.split > 0.0:
+        before = s[W]
+        sliding = arm_budget(s, p, before, load) * scale
+        s[W] = 0.0
+        static = arm_budget(s, p, force, load) * scale
+        s[W] = math.copysign(CREEP, force)
+        leaving = arm_budget(s, p, force, load) * scale
+        s[W] = before
+        return split(before, force, sliding, static, leaving, p.jk, p.h)
+    free = s[W] + p.h * force / p.jk
+    return bounded(free, p.h * arm_budget(s, p, free, load) * scale / p.jk)
 
 
 @njit(cache=True)
@@ -179,16 +218,22 @@ def step(s: np.ndarray, eta: np.ndarray, rate: np.ndarray, p: np.void, beam: Bea
     s[TH] += half * s[W]
     for j in range(eta.size):
         eta[j] += half * rate[j]
-    tau = mesh_torque(s, p)
+    tau = p.gear * motor_torque(s, p, current) if p.joined > 0.0 else mesh_torque(s, p)
     scale = friction_scale(s, p)
     base = base_motion(s, p, tau)
     rotor = motor_torque(s, p, current) - tau / p.gear - p.bm * s[WM] - p.jm * base
     hub = tau + outside_torque(s, p) - p.bs * s[W] - p.asymv * abs(s[W]) - p.jr * base
     hub += beam_forces(s, eta, rate, p, beam, force)
-    budget = (p.tms if s[WM] == 0.0 else p.tmf) * scale
-    s[WM] = bounded(s[WM] + p.h * rotor / p.jm, p.h * budget / p.jm)
+    if p.joined == 0.0:
+        if p.split > 0.0:
+            s[WM] = split(s[WM], rotor, p.tmf * scale, p.tms * scale, p.tmf * scale, p.jm, p.h)
+        else:
+            budget = (p.tms if s[WM] == 0.0 else p.tmf) * scale
+            s[WM] = bounded(s[WM] + p.h * rotor / p.jm, p.h * budget / p.jm)
     before = s[W]
     s[W] = hub_speed(s, p, hub, tau, scale)
+    if p.joined > 0.0:
+        s[WM] = p.gear * s[W]
     accel = (s[W] - before) / p.h + base
     s[TM] += half * s[WM]
     s[TH] += half * s[W]
@@ -248,12 +293,15 @@ def filters(s: np.ndarray, p: np.void, q: np.void, mid: float, base: float) -> N
 
 
 @njit(cache=True)
-def latch(s: np.ndarray, q: np.void, t: float, row: np.ndarray) -> None:
-    """Write what the sensors would show without noise: angle [rad], speed [rad/s], strains [V]."""
+def latch(s: np.ndarray, eta: np.ndarray, m: np.ndarray, q: np.void, t: float, row: np.ndarray) -> None:
+    """Write what the sensors would show without noise: angle [rad], speed [rad/s], strains [V], deflection of the tip [m]."""
     row[0] = s[TH] + q.potnl * math.sin(q.potn * s[TH]) + q.off_angle
     row[1] = s[TACH] + q.off_speed
     row[2] = s[SMID] + q.off_mid + q.sdrift * t
     row[3] = s[SBASE] + q.off_base + q.sdrift * t
+    row[4] = q.off_tip
+    for j in range(eta.size):
+        row[4] += m[j].tip * eta[j]
 
 
 @njit(cache=True)
@@ -284,7 +332,7 @@ def interval(
         mid, base = bridges(s, eta, p, q, beam[0])
         filters(s, p, q, mid, base)
         if j == p.sub - 1 - q.late_steps:
-            latch(s, q, (k * p.sub + j + 1) * p.h, row)
+            latch(s, eta, beam[0], q, (k * p.sub + j + 1) * p.h, row)
     return current
 
 
@@ -301,26 +349,26 @@ def run(
     """Run from rest with command = feed + P (target - angle) - D speed on measured signals, held per sample.
 
     Args:
-        gains: P [A/rad], D [A s/rad], limit of the command [A].
-        feed: [A], (n,). target: [rad], (n,). noise: added before rounding, (n, 4).
+        gains: P [A/rad], D [A s/rad], limit of the command [A]; V in place of A where commands are voltages.
+        feed: [A], (n,). target: [rad], (n,). noise: added before rounding, (n, 5).
 
     Returns:
-        Commands (n,), measurements (n, 4), and truth (n, 7): hub angle, motor speed, hub speed, strains without
+        Commands (n,), measurements (n, 5), and truth (n, 7): hub angle, motor speed, hub speed, strains without
         faults, motor current, energy.
     """
     m = beam[0]
     n, modes = feed.size, m.size
     s, eta, rate, force = np.zeros(STATES), np.zeros(modes), np.zeros(modes), np.zeros(modes)
-    command, shown, clean, truth = np.zeros(n), np.zeros((n, 4)), np.zeros((n + 1, 4)), np.zeros((n, 7))
-    lsb = (q.step_angle, q.step_speed, q.step_strain, q.step_strain)
+    command, shown, clean, truth = np.zeros(n), np.zeros((n, 5)), np.zeros((n + 1, 5)), np.zeros((n, 7))
+    lsb = (q.step_angle, q.step_speed, q.step_strain, q.step_strain, q.step_tip)
     current = 0.0
-    latch(s, q, 0.0, clean[0])
+    latch(s, eta, m, q, 0.0, clean[0])
     for k in range(n):
         mid, base = moments(eta, m)
         truth[k, 0], truth[k, 1], truth[k, 2], truth[k, 5] = s[TH], s[WM], s[W], current
         truth[k, 3], truth[k, 4], truth[k, 6] = q.ksg * mid, q.ksg_base * base, energy(s, eta, rate, p, m)
         late = max(k - q.late_samples, 0)
-        for c in range(4):
+        for c in range(5):
             shown[k, c] = quantise(clean[late, c] + noise[k, c], lsb[c])
         u = feed[k] + gains[0] * (target[k] - shown[k, 0]) - gains[1] * shown[k, 1]
         command[k] = min(max(u, -gains[2]), gains[2])

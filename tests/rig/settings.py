@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from .beam import Beam, build
+from .beam import NO_BEAM, Beam, build
 from .parameters import MODE, NODE, PAR, SENSE, record
 
 #: base constants: name -> (value, unit, what it is); `<name>_x` in a setting scales one
@@ -30,7 +30,11 @@ CONSTANTS = {
     "x_base": (0.02, "m", "place of the base gage"),
     "mesh": (4000.0, "Nm/rad", "stiffness of the gear mesh, arm side"),
     "mesh_c": (2.0, "Nms", "damping of the gear mesh, arm side"),
-    "ra": (1.35, "ohm", "armature resistance; matters with brush or backemf"),
+    "ra": (1.35, "ohm", "armature resistance; matters with brush, backemf or volts"),
+    "joined": (0.0, "1", "1: the motor is rigidly on the hub, and all friction with it"),
+    "split": (0.0, "1", "1: a step in which a body stands still is split there; 0: it errs by the friction of one step"),
+    "volts": (0.0, "1", "1: commands are voltages [V] at the armature, and so are the amplifier's settings"),
+    "weight": (0.0, "Nm", "torque of gravity about the hub of a rigid arm where it points sideways"),
 }
 
 #: effects: name -> (null value, unit, what it is)
@@ -65,7 +69,7 @@ EFFECTS = {
     "root": (0.0, "rad/Nm", "compliance of the beam's clamp"),
     "payload": (0.0, "kg", "tip mass"),
     "tip_inertia": (0.0, "kg m²", "tip inertia"),
-    "elements": (6, "1", "finite elements of the beam"),
+    "elements": (6, "1", "finite elements of the beam; 0 is a rigid arm"),
     "modes": (12, "1", "clamped modes kept, at most two per element"),
     "lag": (0.0, "s", "first-order lag of the current"),
     "delay": (0.0, "s", "pure delay of the current"),
@@ -85,6 +89,7 @@ EFFECTS = {
     "off_speed": (0.0, "rad/s", "sensor offset"),
     "off_mid": (0.0, "V", "sensor offset"),
     "off_base": (0.0, "V", "sensor offset"),
+    "off_tip": (0.0, "m", "sensor offset"),
     "late": (0.0, "s", "all sensors are sampled this late"),
     "pd": (1.0, "1", "factor on the gains of the controller that drives the experiment"),
     "noise": (1.0, "1", "factor on all sensor noise"),
@@ -110,13 +115,16 @@ EFFECTS = {
     "crosstalk": (0.0, "V s/rad", "motor speed in both strain signals"),
     "creep": (0.0, "1", "creep of the gages, share of the strain"),
     "creep_tau": (2.0, "s", "its time constant"),
+    "stop": (0.0, "Nm/rad", "stiffness of soft end stops on both sides"),
+    "stop_at": (1.0, "rad", "hub angle at which they begin"),
+    "sag": (0.0, "1/A²", "saturation of the motor: its constant falls by this times the squared current, to a third at most"),
 }
 
 STEP = 1e-5
 GRAVITY = 9.81
 
-#: steps of the 12-bit board [rad, rad/s, V]
-CONVERTER = {"angle": 1.5e-3, "speed": 0.054, "strain": 2.4e-3}
+#: steps of the 12-bit board [rad, rad/s, V]; the tip is not measured
+CONVERTER = {"angle": 1.5e-3, "speed": 0.054, "strain": 2.4e-3, "tip": 0.0}
 
 
 def resolve(settings: dict[str, float]) -> dict[str, float]:
@@ -136,6 +144,8 @@ def resolve(settings: dict[str, float]) -> dict[str, float]:
 def make_beam(v: dict[str, float]) -> Beam:
     """Return the reduced beam of resolved settings."""
     elements = int(v["elements"])
+    if elements == 0:
+        return NO_BEAM
     return build(
         v["ei"],
         v["density"],
@@ -149,6 +159,12 @@ def make_beam(v: dict[str, float]) -> Beam:
     )
 
 
+def damping(v: dict[str, float]) -> float:
+    """Return the linear damping of a hub with the motor on it [Nms]: friction, and the back-EMF of a motor without a lag."""
+    own = (v["gear"] * v["kphi"]) ** 2 / v["ra"] if v["volts"] and not v["lag"] else 0.0
+    return v["bs"] + v["visc"] + own
+
+
 def make_par(v: dict[str, float], beam: Beam, rate: float, step: float) -> np.void:
     """Return the kernel's parameters for a sampling `rate` [Hz] and a step [s] (made to divide the sample)."""
     sub = math.ceil(1.0 / rate / step - 1e-9)
@@ -156,9 +172,11 @@ def make_par(v: dict[str, float], beam: Beam, rate: float, step: float) -> np.vo
     gap = v["gap"] / v["gear"]
     presliding = v["dahl"] > 0.0
     moved = v["gear"] * v["tmf"] if presliding else 0.0
+    jr = v["jh"] + beam.inertia - float(beam.coupling @ beam.coupling) + v["joined"] * v["gear"] ** 2 * v["jm"]
     made = {
         "h": h,
-        "jr": v["jh"] + beam.inertia - float(beam.coupling @ beam.coupling),
+        "jr": jr,
+        "jk": jr + v["joined"] * 0.5 * h * damping(v),
         "tmf": 0.0 if presliding else v["tmf"],
         "tms": 0.0 if presliding else v["tms"],
         "bs": v["bs"] + v["visc"],
@@ -167,18 +185,18 @@ def make_par(v: dict[str, float], beam: Beam, rate: float, step: float) -> np.vo
         "mesh_k": v["gearc"] if v["gearc"] > 0 else v["mesh"],
         "gap_low": -gap * v["gap_at"],
         "gap_high": gap * (1.0 - v["gap_at"]),
-        "tilt_torque": GRAVITY * math.sin(v["tilt"]) * beam.moment_arm,
+        "tilt_torque": GRAVITY * math.sin(v["tilt"]) * beam.moment_arm + v["weight"],
         "fix_w2": (2 * math.pi * v["fix_f"]) ** 2,
         "fix_c": 4 * math.pi * v["fix_f"] * v["fix_z"],
     }
     return record(PAR, v | made | {"sub": sub, "delay_steps": round(v["delay"] / h)})
 
 
-def make_sense(v: dict[str, float], par: np.void) -> np.void:
-    """Return the sensors' parameters."""
+def make_sense(v: dict[str, float], par: np.void, steps: dict[str, float] = CONVERTER) -> np.void:
+    """Return the sensors' parameters; `steps` are those of the converters by signal."""
     late = round(v["late"] / par["h"])
     made = {"ksg_base": v["ksg"] * v["ksgb"]}
-    made |= {f"step_{signal}": lsb * v["quant"] for signal, lsb in CONVERTER.items()}
+    made |= {f"step_{signal}": lsb * v["quant"] for signal, lsb in steps.items()}
     return record(SENSE, v | made | {"late_samples": late // par["sub"], "late_steps": late % par["sub"]})
 
 
@@ -189,6 +207,7 @@ def make_modes(v: dict[str, float], beam: Beam, h: float) -> tuple[np.ndarray, n
     modes["damp"] = -np.expm1(-h * v["beam_damp"] * beam.omega2) / h
     modes["gravity"] = GRAVITY * math.sin(v["tilt"]) * beam.load
     modes["bend_mid"], modes["bend_base"] = beam.bend
+    modes["tip"] = beam.shape[-1]
     nodes["x"], nodes["weight"] = beam.x, beam.weight
     return modes, nodes, np.ascontiguousarray(beam.shape)
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from truth_rig.kernel import run
 
-from .experiments import plan, stream
-from .settings import STEP, make_beam, make_modes, make_par, make_sense, resolve
+from .experiments import Plan, plan, stream
+from .settings import CONVERTER, STEP, make_beam, make_modes, make_par, make_sense, resolve
 
 SIGNALS = ("arm_angle", "motor_speed", "strain_mid", "strain_base")
+READINGS = (*SIGNALS, "tip_deflection")
 TRUTHS = ("arm_angle", "motor_speed", "hub_speed", "strain_mid", "strain_base", "current", "energy")
 SIGMA = np.array([2e-3, 0.03, 0.01, 0.01])  # [rad, rad/s, V, V]
 
@@ -40,15 +41,42 @@ def simulate(
     """
     n = round(duration * rate) if isinstance(experiment, str) else len(experiment)
     t = np.arange(n) / rate
-    feed, target, gains = plan(experiment, t, seed, vary)
+    made = plan(experiment, t, seed, vary)
+    v = resolve(settings)
+    key = experiment if isinstance(experiment, str) else "array"
+    noise = np.zeros((n, len(READINGS)))
+    noise[:, : len(SIGNALS)] = v["noise"] * SIGMA * stream(seed, key, "noise").standard_normal((n, len(SIGNALS)))
+    command, shown, truth = perform(settings, made, noise, rate, step=step)
+    out = {"time": t, "current": command}
+    out |= dict(zip(SIGNALS, shown.T, strict=False))
+    return out | {f"true_{name}": column for name, column in zip(TRUTHS, truth.T, strict=True)}
+
+
+def perform(
+    settings: dict[str, float],
+    plan: Plan,
+    noise: np.ndarray,
+    rate: float,
+    *,
+    steps: dict[str, float] = CONVERTER,
+    step: float = STEP,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Run a plan of n samples on a machine of any size, from rest at angle 0.
+
+    Args:
+        settings: names of the table of settings; the rest is the thesis's arm.
+        plan: feed, target and gains.
+        noise: (n, 5), of READINGS, added before rounding.
+        rate: samples per second [Hz].
+        steps: of the converters, of angle [rad], speed [rad/s], strain [V] and tip [m].
+        step: of the integrator [s].
+
+    Returns:
+        Commands (n,) [A or V], measurements (n, 5) of READINGS, and truth (n, 7) of TRUTHS.
+    """
     v = resolve(settings)
     beam = make_beam(v)
     par = make_par(v, beam, rate, step)
-    key = experiment if isinstance(experiment, str) else "array"
-    noise = v["noise"] * SIGMA * stream(seed, key, "noise").standard_normal((n, 4))
-    modal = make_modes(v, beam, par["h"])
+    feed, target, gains = plan
     gains = (v["pd"] * gains[0], v["pd"] * gains[1], gains[2])
-    command, shown, truth = run(par, make_sense(v, par), modal, feed, target, gains, noise)
-    out = {"time": t, "current": command}
-    out |= dict(zip(SIGNALS, shown.T, strict=True))
-    return out | {f"true_{name}": column for name, column in zip(TRUTHS, truth.T, strict=True)}
+    return run(par, make_sense(v, par, steps), make_modes(v, beam, par["h"]), feed, target, gains, noise)

@@ -19,7 +19,7 @@ from flexarm_env.plant.active_laws import ActiveLaw
 from flexarm_env.plant.beam import Matrix
 from flexarm_env.plant.blocks import blocks_of
 from flexarm_env.plant.flat_arrays import pack
-from flexarm_env.plant.structure import Structure, assemble, exceeds, stacked
+from flexarm_env.plant.structure import SHORTEST_LAG, Structure, assemble, exceeds, stacked
 
 #: Central differences of order four: places in steps, and weights. The numbers differenced are smooth functions of an arm.
 PLACES = np.array([-2.0, -1.0, 1.0, 2.0])
@@ -75,8 +75,9 @@ def constant_tangents(structure: Structure, active: Sequence[ActiveLaw], interva
 def _kind(structure: Structure) -> tuple[bool, ...]:
     """Tell which bodies, states and inputs an arm has, of those that its numbers decide."""
     s = structure
-    parts = (s.resistance, s.gear_gap, s.current_lag, *(channel.filter for channel in s.sensors.values()))
-    return s.soft_gears, s.soft_root, *(exceeds(part, 0.0) for part in parts)
+    lags = (s.current_lag, *(channel.filter for channel in s.sensors.values()))
+    present = [exceeds(part, 0.0) for part in (s.resistance, s.gear_gap)] + [exceeds(lag, SHORTEST_LAG) for lag in lags]
+    return s.soft_gears, s.soft_root, *present
 
 
 class _Bases:

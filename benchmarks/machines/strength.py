@@ -1,0 +1,134 @@
+"""How strongly an effect shows: the error over the noise that it leaves once the constants have been fitted, all on the rig.
+
+The error in windows of 1 s is what a diagnosis decides on. Here a window begins with the hub where the machine has it: from the
+difference of two runs the motion is taken out that follows from its angle and speed at the start of each window.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
+from benchmarks.machines.effects import Sized
+from benchmarks.machines.experiments import Run
+from benchmarks.machines.machine import record, shown
+from benchmarks.machines.model import Model
+from benchmarks.machines.spread import spreads, with_values
+
+Floats = NDArray[np.float64]
+
+#: Length of a window, and of the part of it over which the state that it begins with is estimated [s].
+WINDOW, START = 1.0, 0.15
+#: Samples per second that are compared at most [Hz]; share of a prior's standard deviation by which a constant is moved.
+RATE, STEP = 100.0, 0.3
+#: Relative tolerance of a strength; largest number of trials; weakest size that is tried over the largest.
+NEAR, TRIALS, WEAKEST = 0.15, 12, 1e-6
+
+
+class Yardstick:
+    """The differences, over the noise, that effects and constants make to a machine's readings under given commands.
+
+    Args:
+        machine: with its true constants.
+        runs: its experiments.
+    """
+
+    def __init__(self, machine: Model, runs: Sequence[Run]) -> None:
+        self.machine, self.rates = machine, [run.rate for run in runs]
+        self.noise = np.array([machine.arm.reading_noise(signal) for signal in machine.arm.sensors])
+        self.commands = [record(machine, run).command for run in runs]
+        self.without = [self._read(machine, i, ()) for i in range(len(runs))]
+
+    def _read(self, machine: Model, place: int, effects: Sequence[dict[str, float]]) -> tuple[Floats, Floats]:
+        return shown(machine, self.commands[place], self.rates[place], effects)
+
+    def difference(self, machine: Model, effects: Sequence[dict[str, float]] = (), sensor: bool = False) -> Floats:
+        """Compute the difference (samples · signals,) that effects or other constants make, in standard deviations of the noise.
+
+        Args:
+            machine: with those constants.
+            effects: settings of the rig.
+            sensor: whether the motion itself is not changed.
+        """
+        parts = []
+        for place, (readings, speed) in enumerate(self.without):
+            other, other_speed = self._read(machine, place, effects)
+            change = other - readings
+            if not sensor:
+                self._restart(change, other_speed - speed, self.rates[place])
+            change /= self.noise
+            parts.append(change[:: max(round(self.rates[place] / RATE), 1)].ravel("F"))
+        return np.concatenate(parts)
+
+    def _restart(self, change: Floats, speed: Floats, rate: float) -> None:
+        """Take out of a difference (samples, signals), in each window, the motion that its hub begins with."""
+        signals, ratio = list(self.machine.arm.sensors), self.machine.values["drive.gear_ratio"]
+        length, first = round(WINDOW * rate), round(START * rate)
+        carried = carried_on(self.machine, length, rate)
+        means = carried[:first].mean(axis=0)
+        for start in range(0, len(change), length):
+            window = change[start : start + length]
+            angle = window[:first, signals.index("arm_angle")].mean()
+            begin = np.linalg.solve(means, [angle, speed[start : start + first].mean()])
+            motion = carried[: len(window)] @ begin
+            window[:, signals.index("arm_angle")] -= motion[:, 0]
+            if "motor_speed" in signals:
+                window[:, signals.index("motor_speed")] -= motion[:, 1] * ratio
+
+    @cached_property
+    def constants(self) -> Floats:
+        """Differences (readings, constants) by one standard deviation of the prior of each constant that a fit moves."""
+        columns = []
+        for path, spread in spreads(self.machine).items():
+            moved = with_values(self.machine, {path: self.machine.values[path] * float(np.exp(STEP * spread))})
+            columns.append(self.difference(moved, sensor=path.startswith("sensors.")) / STEP)
+        return np.stack(columns, axis=1)
+
+    def signature(self, sized: Sized) -> Floats:
+        """Compute the difference (readings,) that an effect makes."""
+        return self.difference(self.machine, (sized.settings(self.machine),), sized.is_sensor)
+
+    def left(self, difference: Floats, rivals: Sequence[Floats] = ()) -> float:
+        """Compute the rms of what the constants, within their priors, and rivals of any size cannot make up for."""
+        free = np.stack(rivals, axis=1) if rivals else np.zeros((len(difference), 0))
+        columns = np.hstack([self.constants, free])
+        priors = np.diag(np.r_[np.ones(self.constants.shape[1]), np.zeros(free.shape[1])])
+        moves = np.linalg.lstsq(np.vstack([columns, priors]), np.r_[difference, np.zeros(len(priors))])[0]
+        return float(np.sqrt(np.mean((difference - columns @ moves) ** 2)))
+
+
+def carried_on(machine: Model, count: int, rate: float) -> Floats:
+    """Compute angle and speed (count, 2, 2) of a rigid hub left to itself, from a unit of angle and from one of speed."""
+    values = machine.values
+    damping = values.get("effects.viscous.coefficient", 0.0)
+    if machine.arm.input == "voltage":
+        damping += (values["drive.gear_ratio"] * values["drive.torque_constant"]) ** 2 / values["drive.resistance"]
+    stiffness = values.get("effects.base_tilt.torque", 0.0)
+    step = expm(np.array([[0.0, 1.0], [-stiffness / machine.inertia, -damping / machine.inertia]]) / rate)
+    found = [np.eye(2)]
+    while len(found) < count:
+        found.append(step @ found[-1])
+    return np.stack(found)
+
+
+def find_size(yard: Yardstick, sized: Sized, wanted: float) -> Sized | None:
+    """Find the size at which an effect of the largest plausible size is as strong as wanted; None where it never is."""
+    low, high = np.log(WEAKEST), 0.0  # logarithms of the share of that size
+    share = 0.0
+    for _ in range(TRIALS):
+        made = replace(sized, size=sized.size * float(np.exp(share)))
+        strength = yard.left(yard.signature(made))
+        if abs(strength - wanted) < NEAR * wanted:
+            return replace(made, strength=strength)
+        low, high = (low, share) if strength > wanted else (share, high)
+        if high <= low:
+            return None
+        # most effects grow in proportion to their size, and some set in at once
+        guess = share + float(np.log(wanted / max(strength, 1e-3 * wanted)))
+        share = guess if low < guess < high else 0.5 * (low + high)
+    return None
