@@ -80,7 +80,8 @@ def simulate(
         name: of the recording; that of the input by default.
         derivatives: names of constants and of parameters of effects, as "hub.inertia", "coulomb.torque". Derivatives are taken
             at the commands as recorded, of the readings without noise and steps, through stick, slip and contact. They hold
-            for changes that add and remove no event. The laws of effects are differentiated by narrow differences.
+            for changes that add and remove no event. The laws of effects are differentiated by narrow differences. Their kernel
+            is compiled at the first use, which takes some 90 s; docs/model.md has an example.
 
     Returns:
         The recording; with `derivatives` also those by constant and signal, {"hub.inertia": {"arm_angle": (n,), …}, …}, in the
@@ -102,12 +103,6 @@ def simulate(
         >>> again = simulate(sticky, square, noise=False)
         >>> bool((again.command == square.command).all())
         True
-
-        The change of the readings with the friction, for a fit of one's own:
-
-        >>> _, slopes = simulate(sticky, square, derivatives=["coulomb.torque", "hub.inertia"])
-        >>> slopes["coulomb.torque"]["arm_angle"].shape
-        (200,)
     """
     if isinstance(input, str) and input in EXPERIMENTS:
         made = _perform(arm, input, _samples(duration, rate), rate, seed, noise, name or input)

@@ -23,6 +23,7 @@ EFFECTS = {
     "base_tilt": ({"uphill": 0.2}, 1e-6),
     "air_drag": ({}, 1e-6),
     "dead_zone": ({}, 1e-7),
+    "saturation": ({"limit": 2.5}, 1e-7),
     "rate_limit": ({"rate": 15.0}, 1e-6),
     "tach_ripple": ({}, 1e-7),
     "pot_nonlinearity": ({}, 1e-7),
@@ -56,7 +57,7 @@ def differences(arm, path):
     return best, width
 
 
-@pytest.mark.slow(minutes=3)
+@pytest.mark.slow(minutes=2)
 @pytest.mark.parametrize("effect", EFFECTS)
 def test_parameters_of_effects(effect):
     parameters, tolerance = EFFECTS[effect]
@@ -71,6 +72,7 @@ def test_parameters_of_effects(effect):
         assert np.all(np.max(np.abs(found - wanted), axis=0) <= tolerance * size + 3 * width + 1e-9 * size.max()), name
 
 
+@pytest.mark.slow(minutes=2)
 def test_a_short_name_is_that_of_an_effect():
     arm = Arm.load("thesis")
     _, slopes = simulate(

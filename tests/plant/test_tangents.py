@@ -6,23 +6,30 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from plant_arms import CATALOGUE, FRICTION, SIGNALS, law, noise
+from plant_arms import COULOMB, SIGNALS, STATIC, noise
 
+from flexarm_env.effects import catalogue
 from flexarm_env.plant import layout as at
+from flexarm_env.plant.active_laws import ActiveLaw
+from flexarm_env.plant.blocks import blocks_of
+from flexarm_env.plant.flat_arrays import pack
 from flexarm_env.plant.plant import Plant
-from flexarm_env.plant.structure import Structure
+from flexarm_env.plant.structure import Structure, assemble
 from flexarm_env.plant.tangents.constants import PLACES, Neighbours, constant_tangents
 from flexarm_env.plant.tangents.tangents import Tangents
 from flexarm_env.sensors.arm_angle import ArmAngle
 from flexarm_env.sensors.motor_speed import MotorSpeed
 
+#: The shipped effects, for which other tests need the derivatives, too: their kernel takes long to compile.
+EFFECTS = catalogue()
 BASE = ("hub_inertia", "motor_inertia", "torque_constant", "gear_ratio", "viscous", "law.0.0", "law.1.0")
 BEAM = ("length", "mass_per_length", "bending_stiffness")
 INTERVAL = 0.005
 #: Relative change of a reading by a relative change of a constant below which differences of replays show rounding alone.
 NEGLIGIBLE = 1e-9
 SWING = 4.0 * np.sin(2 * np.pi * 0.7 * INTERVAL * np.arange(200))
-STRONG, WEAK = noise(0, 60, 4.0), noise(0, 200, 1.0)
+#: Many events, of which none is so near to another that differences of replays disagree.
+STRONG, WEAK = noise(0, 60, 4.0), noise(2, 200, 1.0)
 UNEVEN = INTERVAL * (1.0 + 0.3 * np.sin(np.arange(200.0)))
 
 #: By name: what differs from one element with base friction, and the constants of that.
@@ -40,14 +47,6 @@ ARMS = {
     "gears": ({"gear_compliance": 1 / 300}, ("gear_compliance",)),
     "both sides": ({"gear_compliance": 1 / 4000, "share": 0.4}, ("gear_compliance",)),
     "backlash": ({"gear_gap": 0.01}, ("gear_gap",)),
-}
-#: The same of laws: those beside base friction, and the tolerance. The sweeps of a fit of forces end at some 1e-8 of the force,
-#: and a difference has the change of what is left.
-LAWS = {
-    "saturation": ((law("saturation", 2.5),), 1e-7),
-    "stribeck": ((law("stribeck", 0.05, 0.3),), 5e-6),
-    "cogging": ((law("cogging", 0.03, 12.0),), 1e-6),
-    "drag": ((law("air_drag", 0.05),), 1e-6),
 }
 
 
@@ -74,7 +73,7 @@ class Machine:
         return Machine(self.structure, laws)
 
     def plant(self):
-        plant = Plant(self.structure, self.laws, CATALOGUE, INTERVAL)
+        plant = Plant(self.structure, self.laws, EFFECTS.laws, INTERVAL)
         plant.place()
         return plant
 
@@ -86,14 +85,18 @@ class Machine:
         return plant, Tangents(plant, constant_tangents(self.structure, self.laws, INTERVAL, neighbours), scales)
 
 
-def machine(elements=1, laws=(), share=0.0, **changes):
+def friction(name, level, share):
+    return ActiveLaw(EFFECTS.kinds[name, "friction"], "friction", (level,), False, share)
+
+
+def machine(elements=1, share=0.0, **changes):
     constants = {"viscous": 0.1018, "motor_viscous_share": 0.0177}
     constants["sensors"] = SIGNALS if elements else {"arm_angle": ArmAngle.channel(), "motor_speed": MotorSpeed.channel(1.1)}
     if elements:
         constants |= {"length": 1.0, "mass_per_length": 0.42381, "bending_stiffness": 7.911324}
     return Machine(
         Structure(1.5, 0.33, 0.00193, 0.00129, elements=elements, **(constants | changes)),
-        (*(replace(own, motor_share=share) for own in FRICTION), *laws),
+        (friction("coulomb", COULOMB, share), friction("stiction", STATIC - COULOMB, share)),
     )
 
 
@@ -133,17 +136,24 @@ def check(own, paths, command, *options, tolerance=1e-7):
         compare(own, path, found[..., number], lambda other: other.plant().replay(command, *options), tolerance)
 
 
+@pytest.mark.slow(minutes=1)
 @pytest.mark.parametrize("name", ARMS)
 def test_constants_of_arms_with_base_friction(name):
     changes, own = ARMS[name]
     check(machine(**changes), (*BASE, *own), SWING)
 
 
-@pytest.mark.parametrize("name", LAWS)
-def test_parameters_of_laws(name):
-    laws, tolerance = LAWS[name]
-    own = machine(elements=2, laws=laws)
-    check(own, ("hub_inertia", "law.0.0", *(f"law.2.{i}" for i in range(len(laws[0].parameters)))), SWING, tolerance=tolerance)
+def test_a_given_decomposition_is_used_although_the_ordinary_one_is_kept():
+    own, asked = machine(), []
+
+    def decompose(dynamics):
+        asked.append(dynamics)
+        return blocks_of(dynamics)
+
+    ordinary = pack(own.structure, assemble(own.structure), [own.laws], INTERVAL)
+    given = pack(own.structure, assemble(own.structure), [own.laws], INTERVAL, decompose)
+    assert len(asked) == 2  # the hub free and held
+    assert all(np.array_equal(one, other) for one, other in zip(ordinary, given, strict=True))
 
 
 def modes(own, command):
@@ -165,12 +175,14 @@ def test_runs_of_these_tests_pass_through_the_modes(name, command, wanted):
     assert wanted <= modes(machine(**ARMS[name][0]), command)
 
 
-@pytest.mark.parametrize(("name", "command"), [("one element", STRONG), ("gears", STRONG)])
+@pytest.mark.slow(minutes=1)
+@pytest.mark.parametrize(("name", "command"), [("one element", STRONG), ("gears", STRONG), ("both sides", WEAK)])
 def test_crowded_events(name, command):
     changes, own = ARMS[name]
     check(machine(**changes), (*BASE, *own), command)
 
 
+@pytest.mark.slow(minutes=1)
 @pytest.mark.parametrize("name", ["rigid", "one element", "delay", "backlash"])
 def test_uneven_sampling(name):
     changes, own = ARMS[name]
@@ -192,6 +204,7 @@ def block_gains(plant, physical):
     return gains
 
 
+@pytest.mark.slow(minutes=1)
 @pytest.mark.parametrize("changes", [{}, {"elements": 2, "hub_stiffness": 0.5}, {"gear_compliance": 1 / 300}])
 def test_corrected_replays(changes):
     own, command = machine(**changes), SWING[:120]
