@@ -13,7 +13,9 @@ from typing import Any
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
-from benchmarks import diagnosis, environments, faults, plant, report, start  # noqa: E402
+from benchmarks import environments, faults, plant, report, start  # noqa: E402
+from benchmarks.diagnosis import measure as diagnosis  # noqa: E402
+from benchmarks.diagnosis.cases import CASES  # noqa: E402
 
 PARTS = {"plant": plant, "start": start, "diagnosis": diagnosis, "environments": environments}
 #: Left out of a whole run, and with options of its own.
@@ -27,9 +29,12 @@ def main() -> None:
     for name, part in (PARTS | ON_REQUEST).items():
         parser.add_argument(f"--{name}", action="store_true", help=f"only: {part.__doc__}")
     parser.add_argument("--output", type=Path, help="the JSON file; results/bench/bench.json after a whole run")
+    parser.add_argument("--cases", nargs="+", choices=list(CASES), help="with --diagnosis: only these")
     parser.add_argument("--seed", type=int, default=faults.SEED, help="with --faults: of the cases; 1 has been looked at")
     parser.add_argument("--count", type=int, default=faults.COUNT, help="with --faults: cases")
     asked = parser.parse_args()
+    if asked.cases and not asked.diagnosis:
+        parser.error("--cases needs --diagnosis")
     names = [name for name in PARTS if getattr(asked, name)] or ([] if asked.faults else list(PARTS))
     began = time.perf_counter()
 
@@ -38,7 +43,7 @@ def main() -> None:
 
     found: dict[str, Any] = {}
     for name in names:
-        found |= PARTS[name].measure(say)
+        found |= diagnosis.measure(say, asked.cases) if name == "diagnosis" else PARTS[name].measure(say)
     if asked.faults:
         found |= faults.measure(say, asked.seed, asked.count)
     report.show(found)

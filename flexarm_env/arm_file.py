@@ -12,12 +12,15 @@ from flexarm_env.effects import Catalogue
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import read_toml, write_whole
 from flexarm_env.parameters import DEFAULTS, INPUTS, SECTIONS, Parameter, check_bounds
+from flexarm_env.recordings.messages import file_error
 from flexarm_env.sensors import known_sensors
 from flexarm_env.units import quantity
 
 if TYPE_CHECKING:
     from flexarm_env.arm import Arm
 
+#: Least resistance [ohm] of an armature under voltage: it divides the command.
+LEAST_RESISTANCE = 1e-6
 #: Noise of a sensor that is estimated from the recordings.
 AUTO = "auto"
 TOP = ("name", "description", "fixed", "drive", "hub", "beam", "sensors", "effects", "columns", "controller", "fitted", "origin")
@@ -60,7 +63,7 @@ def read_arm(kind: type[Arm], source: str | Path, known: Catalogue) -> Arm:
     try:
         return arm_from_table(kind, table, path.stem, known)
     except InputError as error:
-        raise InputError(f"{path}: {error}") from None
+        raise file_error(path, error) from None
 
 
 def arm_from_table(kind: type[Arm], table: Mapping[str, Any], name: str, known: Catalogue) -> Arm:
@@ -81,8 +84,8 @@ def arm_from_table(kind: type[Arm], table: Mapping[str, Any], name: str, known: 
     if not isinstance(command, str) or command not in INPUTS:
         raise InputError(f"drive.input = {command!r}{did_you_mean(str(command), INPUTS)}")
     constants = {"drive": _section("drive", drive), "hub": _section("hub", _table(table, "hub"))}
-    if command == "voltage" and constants["drive"]["resistance"] <= 0.0:
-        raise InputError('drive.resistance is missing: voltage drive needs it, as "1.35 ohm"')
+    if command == "voltage" and constants["drive"]["resistance"] < LEAST_RESISTANCE:
+        raise InputError(f'drive.resistance is missing or below {LEAST_RESISTANCE:g} ohm: voltage drive needs it, as "1.35 ohm"')
     if "beam" in table:
         constants["beam"] = _section("beam", _table(table, "beam"))
     elif sum((constants["hub"]["inertia"], constants["drive"]["motor_inertia"])) <= 0.0:

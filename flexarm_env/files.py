@@ -21,10 +21,10 @@ def write_whole(path: Path, content: str | bytes) -> None:
         InputError: if the place cannot be written, or is no regular file.
     """
     place = Path(os.path.realpath(path))
-    if not path.name or (place.exists() and not place.is_file()):
-        raise InputError(f"cannot write {path}: it is no regular file; name another")
-    draft = place.with_name(f".{uuid.uuid4().hex}.tmp")
     try:
+        if not path.name or (place.exists() and not place.is_file()):
+            raise InputError(f"cannot write {path}: it is no regular file; name another")
+        draft = place.with_name(f".{uuid.uuid4().hex}.tmp")
         try:
             with draft.open("xb") as file:
                 file.write(content.encode(errors="replace") if isinstance(content, str) else content)

@@ -6,27 +6,20 @@ that was compiled of an older text is ever used.
 
 from __future__ import annotations
 
+import atexit
 import hashlib
 import importlib.util
-import os
 import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
+from flexarm_env import cache
 from flexarm_env.files import write_whole
 
 #: Threads that need one module at once must get one: a second import would part the types of the first from their names.
 _IMPORTING = threading.RLock()
-
-
-def cache_folder() -> Path:
-    """Locate the folder of the compiled kernels: $FLEXARM_CACHE, or flexarm in the user's cache."""
-    base = os.environ.get("FLEXARM_CACHE")
-    if base:
-        return Path(base)
-    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "flexarm"
 
 
 def without_imports(path: Path) -> str:
@@ -60,11 +53,27 @@ def generated_module(
 
 
 def _imported(name: str, text: Callable[[], str], notice: Callable[[], None] | None) -> ModuleType:
-    path = cache_folder() / f"{name}.py"
+    folder = cache.cache_folder()
+    cache.remove_damaged(folder, name)
+    was_there = (folder / f"{name}.py").exists()
+    try:
+        module = _executed(folder, name, text, notice)
+    except Exception as error:
+        # What numba does not compile is a fault of the text. Anything else, in a module that was read, is damage in the cache.
+        if not was_there or type(error).__module__.startswith("numba"):
+            raise
+        cache.forget(folder, name)
+        module = _executed(folder, name, text, notice)
+    cache.record(folder, name)
+    atexit.register(cache.record, folder, name)  # some kernels are compiled at their first call
+    return module
+
+
+def _executed(folder: Path, name: str, text: Callable[[], str], notice: Callable[[], None] | None) -> ModuleType:
+    path = folder / f"{name}.py"
     if not path.exists():
-        path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, text())
-    if notice and not any((path.parent / "__pycache__").glob(f"{name}*.nbi")):
+    if notice and not any((folder / "__pycache__").glob(f"{name}*.nbi")):
         notice()
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None

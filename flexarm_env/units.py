@@ -130,6 +130,29 @@ def factor(unit: str, target: str, scale: str | float = 1.0) -> float:
     return number * float(_registry().Quantity(1.0, source).to(goal).magnitude)
 
 
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit.
+
+    Example:
+        >>> is_unit("rad/s"), is_unit("0.5"), is_unit("arm")
+        (True, False, False)
+    """
+    try:
+        _parse(text, text)
+    except InputError:
+        return False
+    return True
+
+
+def are_equal(one: str, other: str) -> bool:
+    """Whether two texts are one unit, such as "V" and "volt".
+
+    Raises:
+        InputError: for an unknown unit.
+    """
+    return _parse(one, other) == _parse(other, other)
+
+
 def check_unit(unit: str) -> None:
     """Refuse a unit, stated by a program and not by a file, that pint does not know.
 

@@ -24,7 +24,7 @@ HEAVY = {"torch", "stable_baselines3", "sb3_contrib", "plotly", "matplotlib", "p
 # A module imports from its own layer and those above it in this list.
 LAYERS = (
     {"errors"},
-    {"units", "parameters", "files", "generated", "display"},
+    {"units", "parameters", "files", "cache", "generated", "display"},
     {"arm", "arm_file", "plant", "effects", "sensors", "control", "linear", "recordings", "thesis_drive"},
     {"experiments"},
     {"identify", "controllers", "tasks", "render", "env"},

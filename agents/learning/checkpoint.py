@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
-import pickle
 import warnings
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,10 @@ from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from agents.learning.episodes import EpisodeVecEnv
 from flexarm_env.errors import InputError
 from flexarm_env.files import write_whole
+
+#: A checkpoint begins with this and the SHA-256 of what follows, so that no damaged one is read.
+MARK = b"flexarm-checkpoint-1\n"
+DIGEST = hashlib.sha256().digest_size
 
 
 def write_checkpoint(path: Path, model: BaseAlgorithm, env: EpisodeVecEnv, run: dict[str, Any]) -> None:
@@ -34,7 +38,12 @@ def write_checkpoint(path: Path, model: BaseAlgorithm, env: EpisodeVecEnv, run: 
     }
     whole = io.BytesIO()
     torch.save(state, whole)
-    write_whole(path, whole.getvalue())
+    write_whole(path, sealed(whole.getvalue()))
+
+
+def sealed(content: bytes) -> bytes:
+    """Put the mark and the digest of a checkpoint before its content."""
+    return MARK + hashlib.sha256(content).digest() + content
 
 
 def read_checkpoint(path: Path) -> dict[str, Any]:
@@ -44,11 +53,18 @@ def read_checkpoint(path: Path) -> dict[str, Any]:
         InputError: for a file that is no checkpoint.
     """
     try:
+        whole = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror}; delete it to start anew") from None
+    content = whole[len(MARK) + DIGEST :]
+    if whole != sealed(content):
+        raise InputError(f"{path} is no checkpoint, or a damaged one; delete it to start anew")
+    try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # torch warns of a file that it did not write, and then refuses it
-            found = torch.load(path, map_location="cpu", weights_only=True)
-    except (OSError, RuntimeError, pickle.UnpicklingError, EOFError) as error:
-        raise InputError(f"{path} is no checkpoint ({str(error).splitlines()[0]}); delete it to start anew") from None
+            found = torch.load(io.BytesIO(content), map_location="cpu", weights_only=True)
+    except Exception as error:  # a forged file: torch lets through whatever its reader meets
+        raise InputError(f"{path} is no checkpoint ({type(error).__name__}); delete it to start anew") from None
     if not (isinstance(found, dict) and {"run", "parts", "numpy", "episode"} <= found.keys()):
         raise InputError(f"{path} is no checkpoint; delete it to start anew")
     return found

@@ -167,7 +167,7 @@ def dropout(rng: Rng, arm: Arm, recordings: list[Recording], signal: str) -> Inj
     place = int(rng.integers(len(recordings)))
     y = recordings[place].signals[signal].copy()
     value = 0.0 if rng.random() < 0.7 else float(rng.choice([-1.0, 1.0]) * 3.0 * np.abs(y).max())
-    length = int(rng.integers(1, 40))
+    length = int(rng.integers(1 if value == 0.0 else 2, 40))  # a single reading of another value is a spike
     shown = np.flatnonzero(np.abs(y - value) > 1.2 * _visible(arm, recordings, signal))
     shown = shown[(shown > 5) & (shown < len(y) - length - 5)]
     shown = shown[np.abs(y[shown + length] - value) > 1.2 * _visible(arm, recordings, signal)]

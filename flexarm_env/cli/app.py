@@ -46,8 +46,14 @@ def inspect(
 ) -> None:
     """Look at recordings first: signals, faults of sensors and units, and what they can show. Exit code 1 for a fault."""
     given = arguments.Given(recordings, arm, columns, effects)
-    model, runs = given.load(json, report)
-    from flexarm_env.cli.answers import hand_out
+    from flexarm_env.cli.answers import hand_out, inspect_restart
+    from flexarm_env.recordings.clock import RestartError
+
+    try:
+        model, runs = given.load(json, report)
+    except RestartError as error:
+        inspect_restart(error, arguments.load_arm(arm, effects), arm, json, report, given.command_line("inspect"))
+        raise typer.Exit(1) from None
     from flexarm_env.terminal import identification
     from flexarm_env.terminal.inspection_tables import inspection
     from flexarm_env.terminal.provenance import provenance
@@ -113,28 +119,21 @@ def diagnose(
         show(json)
         return
     given = arguments.Given(arguments.required(recordings, "diagnose"), arm, columns, effects)
-    from flexarm_env.cli.answers import answer_restart, hand_out
+    from flexarm_env.cli.answers import diagnose_restart, hand_out, save_findings
     from flexarm_env.recordings.clock import RestartError
 
     try:
         model, runs = given.load(json, report, save, next_run)
     except RestartError as error:
-        answer_restart(error, arguments.load_arm(arm, effects), arm, seed, json, report)
+        result = diagnose_restart(error, arguments.load_arm(arm, effects), arm, seed, json, report)
+        save_findings(result, save, next_run)
         raise typer.Exit(1) from None
-    from flexarm_env.files import write_whole
     from flexarm_env.terminal import identification, tables
     from flexarm_env.terminal.provenance import provenance
 
     result = identification.diagnose(model, runs, seed, jobs, rate)
-    if next_run is not None and result.next_run is not None:
-        write_whole(next_run, result.next_run.as_csv())
-    elif next_run is not None:
-        typer.echo(f"No next run is proposed, so {next_run} is not written.", err=True)
+    save_findings(result, save, next_run)
     hand_out("diagnose", arm, runs, seed, json, result.as_json(), tables.diagnosis(result))
-    if save is not None and result.recordings:
-        typer.echo(f"The arm was not judged by these recordings, so {save} is not written.", err=True)
-    elif save is not None:
-        result.arm.save(save)
     if report is not None:
         made = given.command_line("diagnose", seed, rate) | provenance("diagnose", arm, runs, seed)
         identification.write_page(report, runs, identification.compare(result.nominal, runs, rate), result, made)

@@ -31,4 +31,6 @@ class RateLimit(Effect):
         """The mean from start to end of a ramp at the rate that began at 0, then the command."""
         change = command - previous
         short, still_short = max(abs(change) - rate * start, 0.0), max(abs(change) - rate * end, 0.0)
-        return command - math.copysign((short**2 - still_short**2) / (2.0 * rate * (end - start)), change)
+        if still_short > 0.0:  # on its way throughout: the only case in which the rate may be 0
+            return previous + math.copysign(0.5 * rate * (start + end), change)
+        return command - math.copysign(short**2 / (2.0 * rate * (end - start)) if short else 0.0, change)

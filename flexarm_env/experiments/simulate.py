@@ -13,6 +13,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.experiments.payload import check_payload, stated_payload, with_payload
 from flexarm_env.experiments.plans import EXPERIMENTS, plan_of, random_stream
+from flexarm_env.experiments.plausible import check_motion
 from flexarm_env.experiments.rig import Rig
 from flexarm_env.recordings.recording import Recording
 
@@ -45,7 +46,7 @@ def simulate(
         name: of the recording; that of the input by default.
 
     Raises:
-        InputError: for an input that does not exist or does not fit the arm.
+        InputError: for an input that does not exist or does not fit the arm, and for a motion beyond any arm's.
 
     Examples:
         >>> from flexarm_env import Arm, simulate
@@ -110,6 +111,7 @@ def _recording(
     conditions: dict[str, float],
 ) -> Recording:
     """Record readings (n, signals)."""
+    check_motion(arm, name, time, commands, readings)
     signals = {signal: readings[:, i] for i, signal in enumerate(arm.signals)}
     return Recording.from_arrays(name, time, arm.input, commands, signals, reference, conditions)
 

@@ -48,8 +48,8 @@ def conclude(
     steps = error_steps(nominal_score, trace, [a.effect for a in accepted], calibrator)
     shares = budget(steps, calibrator.settings)
     if verdict in (*NAMING, "unknown"):
-        arms = {"nominal": arm, "constants": base.arm, **({"final": model.arm} if accepted else {})}
-        torque = {name: unexplained_torque(one, recordings, calibrator.settings) for name, one in arms.items()}
+        arms = {"nominal": nominal, "constants": base.arm, **({"final": model.arm} if accepted else {})}
+        torque = {name: unexplained_torque(one, calibrator.dataset) for name, one in arms.items()}
         shares = replace(shares, torque=torque)
     with calibrator.workers.threads():
         final = calibrator.calibrate_on_all_data(model.calibration)

@@ -783,9 +783,6 @@ class Inspecting:
     """How the readings of recordings are inspected before any model is replayed."""
 
     rounding: float = tuned(1e-9, "A change below this share of a signal's range is none.", "rounding of decimals to floats")
-    from_second_differences: float = tuned(
-        0.60527, "Standard deviation over the median absolute second difference.", "white normal noise: 1/(0.67449 √6)"
-    )
     from_rounding: float = tuned(0.28868, "Standard deviation of rounding over the step.", "uniform distribution: 1/√12")
     usual: float = tuned(
         0.95, "Quantile of a signal's changes that stands for its usual ones.", "leaves room for spikes in 2 % of the rows"
@@ -806,7 +803,10 @@ class Inspecting:
     of_range: float = tuned(0.6, "A wrap jumps by more than this share of the range of its signal.", UNHARMED)
     most_wrapping: float = tuned(0.3, "Share of the changes that are wraps, at most.", UNHARMED)
     same_jump: float = tuned(0.02, "Jumps by one modulus differ by less than this share of it.", UNHARMED)
-    smooth: float = tuned(0.35, "Other changes of a signal that wraps are below this share of the modulus.", SLOWLY)
+    most_alike: float = tuned(0.75, "Share of the jumps that differ by less; the others are also those of the motion.", UNHARMED)
+    same_turn: float = tuned(0.002, "Jumps of an angle that differ by less from a whole turn are one.", UNHARMED)
+    seldom: float = tuned(0.98, "Quantile of a signal's changes that starts and stops exceed.", SLOWLY)
+    smooth: float = tuned(0.35, "Such other changes of a signal that wraps are below this share of the modulus.", SLOWLY)
     fewest_flickers: int = tuned(
         4, "Jumps from which a signal that flickers across the end of its range is one that wraps.", UNHARMED
     )
@@ -823,6 +823,7 @@ class Inspecting:
         40.0, "And by this multiple of the noise.", "sound recordings: 24 at most (EMPS), 20 with play between gears"
     )
     wild_largest: float = tuned(2.0, "And the largest other change by this factor.", SLOWLY)
+    wild_side: float = tuned(0.5, "On either side it stands off by more than this share of its height.", UNHARMED)
     wild_steps: float = tuned(8.0, "And by this multiple of the step.", UNHARMED)
     longest_loss: float = tuned(0.2, "Longest stretch of lost readings, over the recording.", UNHARMED)
     most_named: int = tuned(4, "Stretches of rows that a message names.", UNHARMED)
@@ -837,6 +838,8 @@ class Inspecting:
         "Share of readings at which a signal turns back, from which it counts as noisy.",
         "sound recordings with noise: 0.10 and more; encoders of EMPS and CU Boulder: 0.0005 and less",
     )
+    wide_noise: float = tuned(0.8, "Noise above this multiple of the step has a tail of several steps.", "normal distribution")
+    many_at_rail: int = tuned(50, "Readings from which the tail of such noise has ten times as many a step before.", "the same")
     piled_up: float = tuned(4.0, "Surplus of readings at a rail over those a step before it, in standard deviations.", UNHARMED)
     cut_slope: float = tuned(1.5, "Slope into a rail, in steps per sample.", UNHARMED)
     near_zero: float = tuned(0.02, "A level below this share of the range is that of rest.", UNHARMED)
@@ -924,11 +927,18 @@ class MotionFaults:
     )
     polishing_step: float = tuned(0.008, "First step of its logarithm from there to the best one.", FAULTY_RUNS)
     signal_steps: int = tuned(3, "Steps in which a factor of an only signal is refined.", FAULTY_RUNS)
+    constant_difference: float = tuned(
+        0.02, "Difference of a constant's or a factor's logarithm over which slopes are taken.", FAULTY_RUNS
+    )
+    lag_difference: float = tuned(2e-3, "The same of a lag.", FAULTY_RUNS, "s")
+    correlated: float = tuned(0.1, "Time over which errors beyond the noise count once.", FAULTY_RUNS, "s")
+    sizing_steps: int = tuned(4, "Steps in which a size and the constants beside it are estimated.", FAULTY_RUNS)
+    shortest_step: float = tuned(0.1, "Such a step is shortened to no less than this share of it.", FAULTY_RUNS)
     known_factor: float = tuned(0.02, "Logarithm of the ratio to a known number within which a factor is named by it.", "2 %")
     likely_factor: float = tuned(
-        0.1,
+        0.15,
         "The same where constants of the model change the factor, too.",
-        "machines with constants 4 % off on either side: the factor of an only signal is then up to 7 % off",
+        "machines with constants 4 % off on either side: the factor of an only signal is then up to 12 % off",
     )
 
 

@@ -10,6 +10,12 @@ Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 App = Callable[[Scope, Receive, Send], Awaitable[None]]
 
+#: Of every answer: no page may show the lab within its own, where a visitor would click what he does not see.
+PROTECTION = (
+    (b"content-security-policy", b"frame-ancestors 'none'"),
+    (b"x-frame-options", b"DENY"),
+    (b"x-content-type-options", b"nosniff"),
+)
 #: Largest body of a request [bytes]: room for several recordings.
 LARGEST_BODY = 64 * 2**20
 
@@ -36,11 +42,11 @@ class Guard:
         headers = {key.decode("latin-1").lower(): value.decode("latin-1") for key, value in scope["headers"]}
         refused = self._refusal(scope, headers)
         if refused is None:
-            return await self.app(scope, receive, send)
+            return await self.app(scope, receive, _protected(send))
         if scope["type"] == "websocket":
             return await send({"type": "websocket.close", "code": 1008, "reason": refused[1]})
         status, words = refused
-        plain = [(b"content-type", b"text/plain; charset=utf-8"), (b"connection", b"close")]
+        plain = [(b"content-type", b"text/plain; charset=utf-8"), (b"connection", b"close"), *PROTECTION]
         await send({"type": "http.response.start", "status": status, "headers": plain})
         await send({"type": "http.response.body", "body": words.encode()})
 
@@ -57,3 +63,14 @@ class Guard:
             if int(length) > self.largest:
                 return 413, f"The lab takes at most {self.largest // 2**20} MB at once; cut the recordings or drop fewer."
         return None
+
+
+def _protected(send: Send) -> Send:
+    """Add the protection to the headers of an answer."""
+
+    async def sending(message: MutableMapping[str, Any]) -> None:
+        if message["type"] == "http.response.start":
+            message = {**message, "headers": [*message.get("headers", ()), *PROTECTION]}
+        await send(message)
+
+    return sending

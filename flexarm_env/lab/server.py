@@ -46,13 +46,15 @@ def serve(start: Callable[[], Session], recordings: Sequence[Recording], port: i
 
     @ui.page("/", title="FlexArm lab")
     async def lab() -> None:
-        await ui.context.client.connected()
-        tab = ui.context.client.tab_id or ui.context.client.id
+        client = ui.context.client
+        await client.connected()
+        tab = client.tab_id or client.id
         if tab not in sessions:
             sessions[tab] = await run.io_bound(_started, start, recordings)
             if len(sessions) > MOST_SESSIONS:
                 sessions.popitem(last=False)[1].stop()
-        LabPage(sessions[tab], lambda: Recording.read_all(DEMO))
+        if not client.is_deleted:  # a tab that was closed meanwhile has no page to fill
+            LabPage(sessions[tab], lambda: Recording.read_all(DEMO))
 
     @app.on_shutdown
     def end() -> None:

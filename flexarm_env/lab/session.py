@@ -194,11 +194,11 @@ class Session:
 
     def write_inspection(self) -> None:
         """Start writing the page of what the recordings hold and can show."""
-        recordings, base = self._ready(), self.base
+        recordings, base, inspection = self._ready(), self.base, self.inspection
         made = self._made("inspect", base, None)
 
         def work(progress: Progress) -> str:
-            return inspection_page(overview(base, recordings, progress), made)
+            return inspection_page(overview(base, recordings, progress, inspection=inspection), made)
 
         self._begin(INSPECTING, work)
 

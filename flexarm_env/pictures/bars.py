@@ -9,7 +9,8 @@ from typing import Any
 import plotly.graph_objects as go
 
 from flexarm_env.identify.calibrate.estimate import Estimate
-from flexarm_env.identify.explain.budget import REST, Budget, percent
+from flexarm_env.identify.explain.budget import REST, Budget
+from flexarm_env.identify.percent import percent
 from flexarm_env.identify.results import Candidate, Diagnosis
 from flexarm_env.pictures import words
 from flexarm_env.pictures.plots import legend, with_layout

@@ -21,28 +21,29 @@ def inspection_page(found: Overview, provenance: Mapping[str, Any]) -> str:
         provenance: "command_line", "version" and "commit", which reproduce the page.
     """
     faults, recordings = found.inspection.faults, found.recordings
-    signals = inspection_words.signals(found.arm, recordings, found.inspection)
     parts = [
         paragraph(inspection_words.sentence(found), "verdict"),
-        section("Faults", faults_table(faults)) if faults else "",
+        section("Faults of the recordings", faults_table(faults)) if faults else "",
         bullets(found.notes),
-        section("Recordings", table(inspection_words.EXTENTS, inspection_words.extents(recordings))),
-        section(
-            "Signals",
-            table(inspection_words.SIGNALS, signals, words=2),
-            *_recordings(found),
-        ),
+        _facts(found) if recordings else "",
         _constants(found),
         _effects(found),
         reproduce(provenance, recordings),
     ]
-    return document(f"{words.counted(len(recordings), 'recording')} for arm {found.arm.name}", parts)
+    of = words.counted(len(recordings), "recording") if recordings else "A recording at fault"
+    return document(f"{of} for arm {found.arm.name}", parts)
 
 
 def faults_table(faults: Sequence[Fault]) -> str:
-    """Format the faults, each with the line that mends it."""
-    rows = [[fault.recording, fault.message, fault.hint or words.NOTHING] for fault in faults]
-    return table(["recording", "fault", "line that mends it"], rows, words=3, code=(2,))
+    """Format the faults, each with its size and the line that mends it."""
+    return table(words.FAULT_COLUMNS, words.fault_rows(faults), words=len(words.FAULT_COLUMNS), code=(5,))
+
+
+def _facts(found: Overview) -> str:
+    signals = inspection_words.signals(found.arm, found.recordings, found.inspection)
+    extents = table(inspection_words.EXTENTS, inspection_words.extents(found.recordings))
+    listed = table(inspection_words.SIGNALS, signals, words=2)
+    return section("Recordings", extents) + section("Signals", listed, *_recordings(found))
 
 
 def _recordings(found: Overview) -> list[str]:

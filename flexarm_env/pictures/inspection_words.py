@@ -17,6 +17,7 @@ from flexarm_env.identify.inspect.excitation import (
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.inspection import Inspection
 from flexarm_env.identify.inspect.overview import Overview, stated_noise
+from flexarm_env.identify.percent import percent
 from flexarm_env.parameters import INPUTS
 from flexarm_env.pictures import words
 from flexarm_env.pictures.words import NOTHING, counted, number
@@ -30,11 +31,14 @@ COMMON_SCALE = (
     "No motion here shows the scale that torques, inertias and stiffnesses have in common. It comes from the priors of all of "
     "them. A run with a known payload would show it."
 )
+NOT_READ = "The file cannot be read as one recording, so that nothing else was inspected."
 NEAR_THE_TRUTH = "These limits hold for an arm near the truth: the error that it makes now is no part of them."
 
 
 def remarks(found: Excitation) -> list[str]:
-    """List what a reader of the limits must know, a sentence or two each."""
+    """List what a reader of the limits must know, a sentence or two each; nothing where there are no limits."""
+    if not (found.constants or found.effects):
+        return []
     return [*([COMMON_SCALE] if found.common_scale == NOT_SHOWN else []), NEAR_THE_TRUTH]
 
 
@@ -46,6 +50,8 @@ def faults_sentence(faults: Sequence[Fault], recordings: Sequence[Recording]) ->
 
 def sentence(found: Overview) -> str:
     """Write what recordings hold and can show in two sentences."""
+    if not found.recordings:
+        return f"{counted(len(found.inspection.faults), 'fault')}. {NOT_READ}"
     return f"{faults_sentence(found.inspection.faults, found.recordings)} {_excitation(found.excitation)}"
 
 
@@ -78,7 +84,7 @@ def signals(arm: Arm, recordings: Sequence[Recording], found: Inspection) -> lis
         stated = stated_noise(arm, one.signal)
         ends = [number(one.low), number(one.high), words.plain_unit(one.unit)]
         noise = [number(value, 2) if value else NOTHING for value in (one.step, one.noise, stated)]
-        share = f"{100 * one.samples / samples[one.recording]:.3g} %"
+        share = percent(one.samples / samples[one.recording])
         rows.append([one.recording, words.label_of(one.signal), *ends, *noise, share])
     return rows
 

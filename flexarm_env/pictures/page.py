@@ -14,6 +14,7 @@ from flexarm_env.identify.results import Diagnosis
 from flexarm_env.pictures import bars, effect_figures, overlays, residuals, words
 from flexarm_env.pictures.document import bullets, document, figure, folded, panels, paragraph, section, table
 from flexarm_env.pictures.highlight import replay_of, worst_signals
+from flexarm_env.pictures.inspection_page import faults_table
 from flexarm_env.pictures.provenance_section import reproduce
 from flexarm_env.recordings.recording import Recording
 
@@ -74,8 +75,7 @@ def page_of_faults(diagnosis: Diagnosis) -> str:
 
 
 def _faults(diagnosis: Diagnosis) -> str:
-    rows = words.fault_rows(diagnosis.recordings)
-    return section("Faults of the recordings", table(words.FAULT_COLUMNS, rows, words=len(words.FAULT_COLUMNS), code=(5,)))
+    return section("Faults of the recordings", faults_table(diagnosis.recordings))
 
 
 def _glance(found: Findings) -> str:

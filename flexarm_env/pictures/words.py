@@ -8,9 +8,10 @@ from itertools import pairwise
 
 from flexarm_env.arm import short_name
 from flexarm_env.identify.calibrate.estimate import Estimate
-from flexarm_env.identify.explain.budget import REST, Budget, percent
+from flexarm_env.identify.explain.budget import REST, Budget
 from flexarm_env.identify.explain.comparison import Comparison
 from flexarm_env.identify.inspect.fault import Fault
+from flexarm_env.identify.percent import percent
 from flexarm_env.identify.results import Addition, Candidate, Diagnosis
 from flexarm_env.sensors import known_sensors
 
@@ -208,7 +209,7 @@ def _faults(faults: Sequence[Fault]) -> str:
 def fault_rows(faults: Sequence[Fault]) -> list[list[str]]:
     """List faults as rows of a table: recording, fault, size, share of the samples, and the line that mends it."""
     return [
-        [one.recording, one.kind, size_of(one), f"{100 * one.share:.2g} %" if one.rows else "all", one.message, one.hint]
+        [one.recording, one.kind, size_of(one), percent(one.share) if one.rows else "all", one.message, one.hint]
         for one in faults
     ]
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,13 +15,26 @@ from flexarm_env.plant.active_laws import LAW_LISTS, ActiveLaw, law_lists
 from flexarm_env.plant.beam import Matrix, spread_out, turned
 from flexarm_env.plant.event_free_table import DEPTH, table_size
 from flexarm_env.plant.modal import Mode, complete, mode_of
-from flexarm_env.plant.structure import DRIVERS, HUB_TORQUE, MOTOR_TORQUE, LinearModel, Structure, exceeds
+from flexarm_env.plant.structure import (
+    DRIVERS,
+    HUB_TORQUE,
+    MOTOR_TORQUE,
+    Key,
+    LinearModel,
+    Structure,
+    assemble,
+    exceeds,
+    is_stacked,
+    structure_of,
+)
 
 RESPONSE = 5
 #: Longest steps [s] over which a force that depends on the motion is fitted by one quartic; with drag, by a parabola.
 LONGEST_STEP, LONGEST_STEP_WITH_DRAG = 5e-3, 2.5e-3
 #: Parts of a sample over each of which a ramp of the drive is replaced by its mean.
 RAMP_PARTS = 4
+#: Ports of laws whose forces enter the modes' records.
+LINEAR_PORTS = frozenset({"drag", "weight"})
 #: Change of a force [Nm, N/m] at which the sweeps of its fit end.
 TOLERANCE = 1e-12
 
@@ -38,33 +53,96 @@ def pack(
     Returns:
         d is (numbers,), or for stacked arms (arms, numbers).
     """
-    active, arms = laws[0], model.mass.shape[:-2]
-    modes = _modes(structure, model)
-    points = _points(model, active)
+    active = laws[0]
+    ports = frozenset(law.port for law in active) & LINEAR_PORTS
+    varying = any(law.varies for law in active)
+    if is_stacked(structure):
+        linear = _linear_numbers(structure, model, ports, varying)
+    else:
+        linear = _linear_numbers_of_one(structure.key, ports, varying)
+    n, arms = linear.counts.copy(), model.mass.shape[:-2]
     whole, early = split_delay(structure.input_delay, interval)
-    n = _counts(structure, model, modes, len(points), any(law.varies for law in active))
+    parts = np.zeros((*arms, 2))
+    parts[..., 0], parts[..., 1] = early, interval - early
+    steps = np.where(parts > 0.0, np.maximum(np.ceil(parts / _longest_step(n, active, interval) - 1e-9), 1), 0)
+    n[at.EARLY_SUBSTEPS], n[at.LATE_SUBSTEPS] = steps.reshape(-1, 2)[0].astype(int)
+    bodies = int(n[at.BODIES])
+    lists, _ = law_lists(active, int(n[at.PARAMETERS]), bodies, model.signals)
+    n[list(LAW_LISTS.values())] = at.COUNTS + np.cumsum([0, *map(len, lists[:-1])])
+    parameters = np.array([law_lists(own, 0, bodies, model.signals)[1] for own in laws]).reshape(*arms, -1)
+    head = _constants(structure, laws, interval, parts / np.maximum(steps, 1))
+    d = np.concatenate([head, linear.values, parameters], axis=-1)
+    return d, np.concatenate([n, np.array([number for rows in lists for number in rows], dtype=np.int64)]), whole
+
+
+@dataclass(frozen=True)
+class LinearNumbers:
+    """What the linear quantities alone give.
+
+    Attributes:
+        counts: sizes, flags and places in n, without those of the laws and of the substeps.
+        values: the records of the modes in d, (numbers,) or (arms, numbers).
+    """
+
+    counts: NDArray[np.int64]
+    values: Matrix
+
+
+@lru_cache(maxsize=32)
+def _linear_numbers_of_one(key: Key, ports: frozenset[str], varying: bool) -> LinearNumbers:
+    """Compute the numbers of one arm, cached: fits try many arms whose laws alone differ."""
+    structure = structure_of(key)
+    found = _linear_numbers(structure, assemble(structure), ports, varying)
+    found.counts.flags.writeable = found.values.flags.writeable = False
+    return found
+
+
+def _linear_numbers(structure: Structure, model: LinearModel, ports: frozenset[str], varying: bool) -> LinearNumbers:
+    """Compute what the linear quantities give, for laws of some ports, of which any or none varies while a body turns."""
+    modes, points, arms = _modes(structure, model), _points(model, ports), model.mass.shape[:-2]
+    n = _counts(structure, model, modes, len(points), varying)
     records = [_record(structure, model, mode, which, points, n) for which, mode in enumerate(modes)]
     place = 0
     for key, value in records[0].items():
         n[key] = place
         place += math.prod(value.shape[len(arms) :])
     n[at.STRIDE] = place
-    parts = np.zeros((*arms, 2))
-    parts[..., 0], parts[..., 1] = early, interval - early
-    steps = np.where(parts > 0.0, np.maximum(np.ceil(parts / _longest_step(n, active, interval) - 1e-9), 1), 0)
-    n[at.EARLY_SUBSTEPS], n[at.LATE_SUBSTEPS] = steps.reshape(-1, 2)[0].astype(int)
     n[at.PARAMETERS] = at.CONSTANTS + len(modes) * place
-    bodies = int(n[at.BODIES])
-    lists, _ = law_lists(active, int(n[at.PARAMETERS]), bodies, model.signals)
-    n[list(LAW_LISTS.values())] = at.COUNTS + np.cumsum([0, *map(len, lists[:-1])])
-    parameters = np.array([law_lists(own, 0, bodies, model.signals)[1] for own in laws]).reshape(*arms, -1)
     values = [value.reshape(*arms, -1) for record in records for value in record.values()]
-    head = _constants(structure, laws, interval, parts / np.maximum(steps, 1))
-    d = np.concatenate([head, *values, parameters], axis=-1)
-    return d, np.concatenate([n, np.array([number for rows in lists for number in rows], dtype=np.int64)]), whole
+    return LinearNumbers(n, np.concatenate(values, axis=-1))
 
 
-def _modes(structure: Structure, model: LinearModel) -> list[Mode]:
+@dataclass(frozen=True)
+class _Motion:
+    """One arm, equal to another that moves in the same way: sensors that have no states are left out of the comparison.
+
+    Attributes:
+        key: of the quantities and of the sensors that have states.
+        structure: the linear quantities.
+        model: their matrices.
+    """
+
+    key: Key
+    structure: Structure = field(compare=False)
+    model: LinearModel = field(compare=False)
+
+
+def _modes(structure: Structure, model: LinearModel) -> Sequence[Mode]:
+    """Decompose the arm in every mode."""
+    if is_stacked(structure):
+        return _decomposed(structure, model)
+    quantities, sensors = structure.key
+    with_states = model.extra.shape[-1] > int(exceeds(structure.current_lag, 0.0))
+    return _decomposed_one(_Motion((quantities, sensors if with_states else ()), structure, model))
+
+
+@lru_cache(maxsize=16)
+def _decomposed_one(motion: _Motion) -> Sequence[Mode]:
+    """Decompose one arm, cached: fits try many arms whose sensors alone differ."""
+    return _decomposed(motion.structure, motion.model)
+
+
+def _decomposed(structure: Structure, model: LinearModel) -> Sequence[Mode]:
     bodies = 2 if structure.separate_motor else 1
     count = 8 if exceeds(structure.gear_gap, 0.0) else 2**bodies
     modes = [mode_of(structure, model, which) for which in range(count)]
@@ -80,7 +158,8 @@ def _counts(structure: Structure, model: LinearModel, modes: Sequence[Mode], poi
     n = np.zeros(at.COUNTS, dtype=np.int64)
     bodies = 2 if structure.separate_motor else 1
     n[at.BODIES], n[at.COORDINATES], n[at.POINTS] = bodies, len(model.names), points
-    n[at.COUPLED] = bodies == 2 or np.any(np.not_equal(structure.hub_stiffness, 0.0))
+    holds = np.any(np.not_equal(structure.hub_stiffness, 0.0)) or np.any(model.extra_from_motion[..., 0])  # a filtered angle
+    n[at.COUPLED] = bodies == 2 or holds
     n[at.VARYING] = varying
     n[at.STEADY_BODIES] = 0 if varying else bodies
     n[at.BLOCKS] = max(mode.c0.shape[-1] for mode in modes)
@@ -113,9 +192,9 @@ def _constants(structure: Structure, laws: Sequence[Sequence[ActiveLaw]], interv
     return head
 
 
-def _points(model: LinearModel, active: Sequence[ActiveLaw]) -> NDArray[np.intp]:
-    """Locate the forces on the beam that laws give: the drag at each point, and weight, the last."""
-    ports, last = {law.port for law in active}, model.beam_force.shape[-1] - 1
+def _points(model: LinearModel, ports: frozenset[str]) -> NDArray[np.intp]:
+    """Locate the forces on the beam that laws of some ports give: the drag at each point, and weight, the last."""
+    last = model.beam_force.shape[-1] - 1
     return np.arange(0 if "drag" in ports else last, last + 1 if "weight" in ports else last)
 
 

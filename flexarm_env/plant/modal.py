@@ -7,6 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from flexarm_env.errors import InputError
 from flexarm_env.plant.beam import Matrix, spread_out
 from flexarm_env.plant.blocks import blocks_of
 from flexarm_env.plant.structure import (
@@ -20,6 +21,10 @@ from flexarm_env.plant.structure import (
 )
 
 HUB_STUCK, MOTOR_STUCK, GEAR_OPEN = 1, 2, 4
+#: A rate of decay [1/s] below this is none: an eigenvalue so near to 0 has an eigenvector that no float tells from that of 0.
+SLOWEST_DECAY = 1e-16
+#: Inverse of an inertia [1/(kg m²)], or of a mass, from which products with it need not be finite.
+LARGEST_INVERSE = 1e100
 
 
 @dataclass
@@ -57,7 +62,7 @@ def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
     for column, place in held:
         drivers[..., column] -= stiffness[..., place]
     inertial = model.mass @ free
-    inverse = np.asarray(np.linalg.inv(free.T @ inertial), dtype=np.float64)
+    inverse = _inverse(free.T @ inertial)
     answer = inverse @ free.T  # accelerations by forces
     dynamics = _dynamics(model, free, stiffness, damping, inverse)
     c0, c1, v, w = blocks_of(dynamics)
@@ -82,6 +87,21 @@ def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
     )
 
 
+def _inverse(mass: Matrix) -> Matrix:
+    """Invert mass matrices (…, positions, positions).
+
+    Raises:
+        InputError: for a body of no inertia.
+    """
+    try:
+        inverse = np.asarray(np.linalg.inv(mass), dtype=np.float64)
+    except np.linalg.LinAlgError:
+        inverse = np.full_like(mass, np.inf)
+    if not (np.abs(inverse) < LARGEST_INVERSE).all():
+        raise InputError("a body of the arm has no inertia, and any torque would move it beyond all: raise hub.inertia")
+    return inverse
+
+
 def _dynamics(model: LinearModel, free: Matrix, stiffness: Matrix, damping: Matrix, inverse: Matrix) -> Matrix:
     """Compute A (…, states, states) of ẋ = A x, for x the free positions, their rates and the extra states."""
     arms, size, positions = model.mass.shape[:-2], len(model.names), free.shape[1]
@@ -91,7 +111,8 @@ def _dynamics(model: LinearModel, free: Matrix, stiffness: Matrix, damping: Matr
     pull = _clean(free.T @ (stiffness @ free), stiffness)
     rows = slice(positions, 2 * positions)
     dynamics[..., rows, :positions] = -inverse @ pull
-    dynamics[..., rows, rows] = -(inverse @ free.T) @ (damping @ free)
+    decay = -(inverse @ free.T) @ (damping @ free)
+    dynamics[..., rows, rows] = np.where(np.abs(decay) < SLOWEST_DECAY, 0.0, decay)
     dynamics[..., rows, 2 * positions :] = (inverse @ free.T) @ model.from_extra
     into_extra = model.extra_from_motion
     dynamics[..., 2 * positions :, :positions] = _clean(into_extra[..., :size] @ free, into_extra)

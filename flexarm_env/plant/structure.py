@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,9 @@ from flexarm_env.plant.reading import Channel, Coordinates, Reading, time_consta
 DRIVERS = ("command", "hub_torque", "motor_torque", "one", "gear_side", "held_hub", "held_motor")
 COMMAND, HUB_TORQUE, MOTOR_TORQUE, ONE, GEAR_SIDE, HELD_HUB, HELD_MOTOR = range(len(DRIVERS))
 
+#: An arm's quantities; signals and the attributes of their channels.
+Key = tuple[tuple[Any, ...], tuple[tuple[Any, ...], ...]]
+
 #: Quantities that arms of one kind have in common.
 WHOLE = ("elements", "sensors")
 #: Frequency of a motor on touching gears with the hub held [rad/s]: where backlash requires a separate motor but no compliance
@@ -25,6 +29,10 @@ STIFF_GEARS, RIGID_GEARS = 960.0, 48e3
 #: A beam's root that turns by less than this share of the beam's own turn (length over bending stiffness) is rigid: its
 #: undamped mode is too fast to be seen, and costs fifty times a replay.
 LEAST_ROOT_SHARE = 1e-3
+
+
+#: A first-order lag below this time constant [s] is none: its response is over within any sample, and its rate leaves no digits.
+SHORTEST_LAG = 1e-9
 
 
 def exceeds(quantity: float | Matrix, limit: float) -> bool:
@@ -60,6 +68,12 @@ class Structure:
     current_lag: float = 0.0
     input_delay: float = 0.0
     sensors: dict[str, Channel] = field(default_factory=dict)
+
+    @property
+    def key(self) -> Key:
+        """All quantities and sensors of one arm, to look up what was computed from them."""
+        *quantities, sensors = vars(self).values()
+        return tuple(quantities), tuple([(signal, *vars(channel).values()) for signal, channel in sensors.items()])
 
     @property
     def separate_motor(self) -> bool:
@@ -129,6 +143,18 @@ class LinearModel:
     settled: Matrix  # (extra, 2 coordinates): filters of accelerations from [q, q̇], of an arm long at constant speed
 
 
+def structure_of(key: Key) -> Structure:
+    """Build the structure of a key anew."""
+    quantities, sensors = key
+    values: tuple[Any, ...] = (*quantities, {signal: Channel(*channel) for signal, *channel in sensors})
+    return Structure(*values)
+
+
+def is_stacked(structure: Structure) -> bool:
+    """Whether a structure holds many arms."""
+    return np.ndim(structure.hub_inertia) > 0
+
+
 def assemble(structure: Structure) -> LinearModel:
     """Build the matrices of an arm, or of many (thesis eqs. 3.9 to 3.14, consistent: see the errata).
 
@@ -137,9 +163,22 @@ def assemble(structure: Structure) -> LinearModel:
 
     Returns:
         Matrices on the coordinates [hub, (motor), (root), v_1, s_1, …]; the motor's angle is that of the arm side.
-        Those of stacked arms are (arms, rows, columns).
+        Those of stacked arms are (arms, rows, columns); those of one arm are kept for the next like it, and read-only.
     """
-    s = structure
+    return _assemble(structure) if is_stacked(structure) else _assemble_one(structure.key)
+
+
+@lru_cache(maxsize=64)
+def _assemble_one(key: Key) -> LinearModel:
+    """Build the matrices of one arm, cached: fits try many arms whose laws alone differ."""
+    model = _assemble(structure_of(key))
+    for quantity in vars(model).values():
+        if isinstance(quantity, np.ndarray):
+            quantity.flags.writeable = False
+    return model
+
+
+def _assemble(s: Structure) -> LinearModel:
     names = ["hub"] + (["motor"] if s.separate_motor else [])
     beam = Beam(s.elements, s.length, s.mass_per_length, s.bending_stiffness) if s.elements else None
     # a beam coordinate stands where its own numbering puts it, the root's slope only if it can turn
@@ -200,7 +239,7 @@ def _drive(s: Structure, names: list[str], motor: int, mass: Matrix, damping: Ma
     drivers[..., 0, ONE] = s.hub_torque
     torque_per_amp, amps_per_command = s.gear_ratio * s.torque_constant, s.amps_by_command
     amps_per_speed = -torque_per_amp / s.resistance if exceeds(s.resistance, 0.0) else 0.0
-    lagged = exceeds(s.current_lag, 0.0)
+    lagged = exceeds(s.current_lag, SHORTEST_LAG)
     extra = int(lagged)
     model = LinearModel(
         names=names,
@@ -234,7 +273,7 @@ def _sensors(s: Structure, model: LinearModel, coordinates: Coordinates) -> None
     size, arms = len(model.names), model.mass.shape[:-2]
     readings = [_reading(signal, channel, coordinates) for signal, channel in s.sensors.items()]
     filters = [time_constant(reading, channel) for reading, channel in zip(readings, s.sensors.values(), strict=True)]
-    filtered = [i for i, filter in enumerate(filters) if exceeds(filter, 0.0)]
+    filtered = [i for i, filter in enumerate(filters) if exceeds(filter, SHORTEST_LAG)]
     before = model.extra.shape[-1]
     total = before + len(filtered)
     model.extra = _grown(model.extra, total, total)

@@ -165,7 +165,7 @@ def _row_by_row(
 def _width_hint(row: str, found: int, expected: int, delimiter: str) -> str:
     stands = f"it is {quoted(row)}"
     if row.lstrip().startswith("#"):
-        return f"a remark stands before the header; {stands}"
+        return f"a remark stands before the header or after the last row; {stands}"
     if found < expected:
         return f"is the row cut off? {stands}"
     commas = " Or are its commas decimal ones? Export with decimal points, or with ';' between cells" if delimiter == "," else ""

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from flexarm_env import units
 from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.recordings.cells import cut
 from flexarm_env.recordings.columns import ColumnMap, Source, native_sources
 from flexarm_env.recordings.messages import quoted
 
@@ -41,6 +43,32 @@ def header_sources(header: Sequence[str], layout: ColumnMap, row: str = "") -> d
             raise InputError(f"columns '{twin}' and '{name}': both map to column {place}; correct one of them")
         sources[name] = replace(source, place=place, key="index")
     return sources
+
+
+def states_units(line: str, header: Sequence[str], row: int, layout: ColumnMap) -> bool:
+    """Whether the line under a header has a unit, in brackets or not, in every cell that is not empty.
+
+    Args:
+        line: of the file.
+        header: its cells.
+        row: the header's line in the file, counted from 1.
+        layout: the file's column map.
+
+    Raises:
+        InputError: for a unit that is not that of the column map.
+    """
+    cells = [cell.strip(" \t[]()") for cell in cut(line, layout.delimiter)]
+    if not any(cells) or any(cell not in ("", "-") and not units.is_unit(cell) for cell in cells):
+        return False
+    for name, source in header_sources(header, layout, f"row {row}").items():
+        place = int(source.place)
+        stated = cells[place] if place < len(cells) else ""
+        if stated not in ("", "-", source.unit) and not units.are_equal(stated, source.unit):
+            raise InputError(
+                f"row {row + 1}, column '{name}': the file states {quoted(stated)}, but [columns] has {quoted(source.unit)}; "
+                "correct the one that is wrong"
+            )
+    return True
 
 
 def _refined(header: Sequence[str], layout: ColumnMap, at: str) -> dict[str, Source]:

@@ -55,12 +55,17 @@ def _layout(arm: Arm) -> ColumnMap:
 
 
 def _files(paths: Sequence[Path], columns: ColumnMap, require_signal: bool) -> list[Path]:
-    """List the file of each recording; where the arm's are in several files, others may stand alone."""
+    """List the file of each recording in the order of the paths; where the arm's are in several files, others may stand alone."""
     if not columns.joins:
         return recording_files(paths, columns)
-    alone = [path for path in paths if path.is_file() and stands_alone(path, columns, require_signal)]
-    others = [path for path in paths if path not in alone]
-    return [*(files_of(alone) if alone else []), *(recording_files(others, columns) if others or not alone else [])]
+    if not paths:
+        return files_of(paths)
+    found: list[Path] = []
+    for path in paths:
+        alone = path.is_file() and stands_alone(path, columns, require_signal)
+        files = [path] if alone else [one for one in recording_files([path], columns) if one not in found]
+        found += files
+    return files_of(found)
 
 
 def _read(arm: Arm, file: Path, columns: ColumnMap, require_signal: bool) -> Recording:

@@ -15,7 +15,6 @@ def inspection(found: Overview) -> list[RenderableType]:
     """Make the tables of an overview: faults, recordings, signals, constants, effects."""
     lines = [Text(f"- {line}") for line in (*found.inspection.notes, *found.notes)]
     excited = found.excitation
-    signals = inspection_words.signals(found.arm, found.recordings, found.inspection)
     constants = table(
         "Constants: 90 % interval before and after a fit", inspection_words.CONSTANTS, inspection_words.constants(excited)
     )
@@ -23,15 +22,21 @@ def inspection(found: Overview) -> list[RenderableType]:
     return [
         Text(inspection_words.sentence(found), style="bold"),
         *([Text("\n").join(lines)] if lines else []),
-        _words(table("Recordings", inspection_words.EXTENTS, inspection_words.extents(found.recordings)), 4),
-        _words(
-            table("Signals", inspection_words.SIGNALS, signals),
-            1,
-            4,
-        ),
+        *(_facts(found) if found.recordings else []),
         *([_words(constants, 1, 3)] if excited.constants else []),
         *([_words(effects, 1, 4, 5)] if excited.effects else []),
-        Text("\n".join(inspection_words.remarks(excited))),
+        *map(Text, inspection_words.remarks(excited)),
+    ]
+
+
+def _facts(found: Overview) -> list[RenderableType]:
+    extents, signals = (
+        inspection_words.extents(found.recordings),
+        inspection_words.signals(found.arm, found.recordings, found.inspection),
+    )
+    return [
+        _words(table("Recordings", inspection_words.EXTENTS, extents), 4),
+        _words(table("Signals", inspection_words.SIGNALS, signals), 1, 4),
     ]
 
 

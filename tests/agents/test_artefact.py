@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import pickle
 from dataclasses import replace
 from pathlib import Path
@@ -10,10 +11,12 @@ import numpy as np
 import pytest
 
 pytest.importorskip("stable_baselines3")
+import torch
 from safetensors.torch import load_file, save_file
 from small_plans import silent, small
 
 from agents.learning.artefact import Artefact
+from agents.learning.checkpoint import sealed
 from agents.learning.options import ALGORITHMS
 from agents.learning.run import train
 from agents.measures import measure
@@ -65,11 +68,14 @@ def test_loading_runs_no_code(tmp_path: Path) -> None:
             return (Path.touch, (tmp_path / "harmed",))
 
     (tmp_path / "bad-0.safetensors").write_bytes(pickle.dumps(Harm()))
-    (tmp_path / "bad-0.checkpoint").write_bytes(pickle.dumps({"run": Harm()}))
     with pytest.raises(InputError, match="no policy"):
         Artefact.load(tmp_path / "bad-0.safetensors")
-    with pytest.raises(InputError, match="no checkpoint"):
-        train(small(), 0, tmp_path / "bad-0.checkpoint", silent)
+    forged = io.BytesIO()
+    torch.save({"run": Harm()}, forged)
+    for content in (pickle.dumps({"run": Harm()}), sealed(pickle.dumps({"run": Harm()})), sealed(forged.getvalue())):
+        (tmp_path / "bad-0.checkpoint").write_bytes(content)
+        with pytest.raises(InputError, match="no checkpoint"):
+            train(small(), 0, tmp_path / "bad-0.checkpoint", silent)
     assert not (tmp_path / "harmed").exists()
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ pytest.importorskip("stable_baselines3")
 import torch
 from small_plans import silent, small
 
+from agents.learning.checkpoint import read_checkpoint
 from agents.learning.episodes import EpisodeVecEnv
 from agents.learning.models import make_model
 from agents.learning.run import train
@@ -78,6 +80,23 @@ def test_a_checkpoint_of_another_plan_is_refused(tmp_path: Path, monkeypatch: py
     train(small(actions=60), 3, tmp_path / "a.checkpoint", silent)
     with pytest.raises(InputError, match="another plan"):
         train(small(actions=80), 3, tmp_path / "a.checkpoint", silent)
+
+
+def test_a_damaged_checkpoint_is_refused_in_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("agents.learning.run.BETWEEN", 0.0)
+    place = tmp_path / "a.checkpoint"
+    train(small(), 3, place, silent)
+    whole, draw = place.read_bytes(), random.Random(5)
+    damaged = [b"", b"\0", b"a text\n", whole[:40], whole[: len(whole) // 2], whole[:-1], whole + b"\0"]
+    for _ in range(40):
+        flipped = bytearray(whole)
+        flipped[draw.randrange(len(whole))] ^= 1 << draw.randrange(8)
+        damaged.append(bytes(flipped))
+    for content in damaged:
+        place.write_bytes(content)
+        with pytest.raises(InputError, match=r"a\.checkpoint is no checkpoint, or a damaged one; delete it") as caught:
+            read_checkpoint(place)
+        assert str(caught.value).isprintable()
 
 
 def test_the_command_trains_what_is_not_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -56,6 +56,27 @@ def test_two_runs_in_a_file_are_a_verdict_too(flexarm, two_runs, tmp_path):
     assert "two runs" in flexarm.out
 
 
+def test_what_two_runs_leave_unwritten_is_said(flexarm, two_runs, tmp_path):
+    arm, commands = tmp_path / "arm.toml", tmp_path / "next.csv"
+    assert flexarm("diagnose", two_runs, "--save", arm, "--next-run", commands) == 1
+    assert f"{arm} is not written" in flexarm.err
+    assert f"{commands} is not written" in flexarm.err
+    assert not arm.exists()
+    assert not commands.exists()
+
+
+def test_an_inspection_of_two_runs_names_their_fault(flexarm, two_runs, tmp_path):
+    assert flexarm("inspect", two_runs, "--json", tmp_path / "i.json") == 1
+    found = json.loads((tmp_path / "i.json").read_text())
+    assert [(fault["fault"], fault["signal"], fault["value"]) for fault in found["faults"]] == [
+        ("restart", "time", pytest.approx(3.996))
+    ]
+    assert (found["signals"], found["extents"]) == ([], {})
+    assert flexarm.out.startswith("1 fault. The file cannot be read as one recording")
+    assert "row 1002" in flexarm.out
+    assert flexarm.err == ""
+
+
 @pytest.mark.parametrize("command", [["compare"], ["fit"], ["add", "backlash"]])
 def test_other_commands_refuse_two_runs_with_the_row(flexarm, two_runs, command):
     assert flexarm(*command, two_runs) == 2
@@ -79,8 +100,12 @@ def test_fit_and_add_go_on_with_a_note_on_stderr(flexarm, identify, clipped):
 
 @needs_plots
 def test_the_page_names_the_fault(flexarm, clipped, two_runs, tmp_path):
-    for file, words in ((clipped, "stands at its extreme"), (two_runs, "two runs")):
-        assert flexarm("diagnose", file, "--report", tmp_path / "page.html") == 1
+    for command, file, words in (
+        ("diagnose", clipped, "stands at its extreme"),
+        ("diagnose", two_runs, "two runs"),
+        ("inspect", two_runs, "two runs"),
+    ):
+        assert flexarm(command, file, "--report", tmp_path / "page.html") == 1
         text = (tmp_path / "page.html").read_text()
         assert "Faults of the recordings" in text
         assert words in text

@@ -94,6 +94,14 @@ def test_a_bad_arm_file_gets_one_line(flexarm, runs, tmp_path, old, new, words):
     assert words in line
 
 
+def test_a_long_key_of_an_arm_file_makes_no_long_line(flexarm, runs, tmp_path):
+    file = tmp_path / "arm.toml"
+    file.write_text(GOOD_ARM.replace("gear_ratio", "gear" * 50_000, 1))
+    line = flexarm.refused("compare", runs, "--arm", file)
+    assert "unknown key 'drive.geargear" in line
+    assert len(line) < 1000 + len(str(file))
+
+
 def test_an_arm_that_is_no_file_gets_one_line(flexarm, runs, tmp_path):
     (tmp_path / "binary.toml").write_bytes(bytes(range(256)))
     with open(tmp_path / "big.toml", "wb") as file:

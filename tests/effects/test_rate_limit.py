@@ -35,3 +35,13 @@ def test_a_free_hub_moves_as_the_ramp_drives_it(rate):
     bound = per_ampere * (changes + 2.0 * rate * part) * part**2 / 8.0
     assert np.abs(angle - expected).max() < bound
     assert np.diff(angle)[-1] == pytest.approx(np.diff(expected)[-1], rel=1e-5)
+
+
+@pytest.mark.parametrize("rate", [0.0, 1e-200, 1e-12, 1e-3])
+def test_a_hub_under_a_rate_near_zero_moves_as_the_integral_does(rate):
+    free = Arm.load("emps").without_effect("viscous").without_effect("coulomb").without_effect("constant_torque")
+    angle = free.with_effect("rate_limit", rate=rate).plant(INTERVAL).replay(np.full(100, FIRST))[:, 0]
+    per_ampere = free.constants["drive"]["torque_constant"] / free.constants["hub"]["inertia"]
+    time = INTERVAL * np.arange(len(angle))
+    # The mean of a ramp over each part of a sample misses its integral in the first few samples alone.
+    assert angle[10:] == pytest.approx((per_ampere * rate * time**3 / 6.0)[10:], rel=1e-2, abs=0.0)

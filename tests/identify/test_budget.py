@@ -14,9 +14,10 @@ from flexarm_env import Arm
 from flexarm_env.experiments.simulate import simulate
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.conclude import conclude
-from flexarm_env.identify.explain.budget import Budget, budget, budget_notes, percent, rest_notes, torque_notes
+from flexarm_env.identify.explain.budget import Budget, budget, budget_notes, rest_notes, torque_notes
 from flexarm_env.identify.explain.error_steps import ErrorStep, error_steps
 from flexarm_env.identify.explain.unexplained_torque import unexplained_torque
+from flexarm_env.identify.percent import percent
 from flexarm_env.identify.replay.dataset import Dataset, prepare
 from flexarm_env.identify.replay.error_measure import Score, SignalError
 from flexarm_env.identify.select.model import judge
@@ -176,7 +177,7 @@ def test_the_unexplained_torque_is_that_of_the_missing_effects():
     complete = nominal
     for name, values in TRUE.items():
         complete = complete.with_effect(name, **values)
-    missing, rest = (unexplained_torque(arm, recordings) for arm in (nominal, complete))
+    missing, rest = (unexplained_torque(*prepare(arm, recordings)) for arm in (nominal, complete))
     assert missing == pytest.approx(np.hypot(0.05, 0.02), rel=0.1)
     assert rest < 0.3 * missing
 

@@ -8,7 +8,10 @@ import pytest
 from flexarm_env import Arm, Recording, compare, simulate
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.initial_state import find_start
+from flexarm_env.identify.replay.replay import replay
+from flexarm_env.identify.replay.start_fit import _mode_directions
 from flexarm_env.identify.settings import SETTINGS
+from flexarm_env.plant.plant import Plant
 from flexarm_env.thesis.arms import motor_alone
 
 PULSE_ENDS = 1.0  # [s], of simulate's first pulse
@@ -46,7 +49,7 @@ def test_the_speed_at_the_start_is_found_without_a_tachometer() -> None:
 def test_an_arm_that_is_driven_at_once_starts_at_rest() -> None:
     time = np.arange(200) / 500.0
     measured = np.column_stack([4.0 * time**2, 12.0 * time, 2.0 * (1.0 - np.cos(60.0 * time)), 3.0 * (1.0 - np.cos(60.0 * time))])
-    start = find_start(time, measured, SIGNALS, NOISE, SETTINGS.initial_states)
+    start = find_start(time, np.ones(200), measured, SIGNALS, NOISE, SETTINGS.initial_states)
     assert (start.angle, start.speed, start.moving, start.vibrating) == (0.0, 0.0, False, False)
 
 
@@ -54,10 +57,24 @@ def test_an_offset_of_a_gage_is_no_vibration() -> None:
     time = np.arange(200) / 500.0
     draw = np.random.default_rng(0)
     measured = NOISE * draw.standard_normal((200, 4)) + np.array([0.5, 0.0, 0.3, -0.2])
-    start = find_start(time, measured, SIGNALS, NOISE, SETTINGS.initial_states)
+    start = find_start(time, np.ones(200), measured, SIGNALS, NOISE, SETTINGS.initial_states)
     assert start.angle == pytest.approx(0.5, abs=1e-3)
     assert not start.moving
     assert not start.vibrating
+
+
+@pytest.mark.parametrize(("driven_from", "ringing"), [(0.4, 0.0), (0.0, 0.0), (0.4, 0.05)])
+def test_the_beam_of_a_driven_arm_is_no_vibration_at_the_start(driven_from: float, ringing: float) -> None:
+    """A push bends the beam before the hub has left its place; a beam that rings did so before the first command."""
+    time = np.arange(400) / 500.0
+    strain = np.where(time > 0.4, 3.0 * (1.0 - np.cos(60.0 * (time - 0.4))), 0.0) + ringing * np.cos(60.0 * time)
+    angle = 4.0 * np.maximum(time - 0.42, 0.0) ** 2
+    measured = np.column_stack([angle, np.zeros(400), strain, strain])
+    command = np.where(time >= driven_from, 1.0, 0.0)
+    start = find_start(time, command, measured, SIGNALS, NOISE, SETTINGS.initial_states)
+    assert start.vibrating == (driven_from == 0.0 or ringing > 0.0)
+    assert start.samples == (201 if driven_from else 246)
+    assert not start.moving
 
 
 @pytest.mark.parametrize("signals", [SIGNALS, [s for s in SIGNALS if s != "motor_speed"]])
@@ -71,7 +88,8 @@ def test_an_offset_of_a_gage_is_no_motion_of_an_arm_that_is_driven_at_once(offse
     (run,) = data.runs
     assert not run.start.moving
     plant = data.plants(nominal)[run.payload]
-    data.set_initial_state(plant, run)
+    stretch = data.stretch(run)
+    stretch.place(plant, stretch.fit(plant))
     assert not np.any(plant.physical())
 
 
@@ -95,3 +113,47 @@ def test_a_start_is_found_however_slow_the_sampling() -> None:
     arm, times = motor_alone(), 0.25 * np.arange(80)
     given = Recording.from_arrays("steady", times, "current", np.full(80, 0.4), {}, require_signal=False)
     assert error(arm, cut(simulate(arm, given), 3.0, ["motor_speed"])) < 1.5
+
+
+def changed(arm: Arm, share: float) -> Arm:
+    names = ["drive.torque_constant", "hub.inertia", *(["beam.bending_stiffness"] if arm.has("beam") else [])]
+    return arm.with_values({name: arm.value(name) * (1.0 + share) for name in names})
+
+
+@pytest.mark.parametrize(("name", "first"), [("thesis", 0.95), ("cu-flexible", 0.7), ("cu-rigid", 0.95)])
+def test_a_start_follows_the_constants_as_well_as_if_it_were_fitted_anew(name: str, first: float) -> None:
+    arm = Arm.load(name)
+    arm = arm if arm.effects else arm.with_effect("coulomb", torque=0.03)
+    arm, data = prepare(arm, [cut(simulate(arm, "pulse", duration=3.0), first)])
+    (run,) = data.runs
+    stretch = data.stretch(run)
+    kept = stretch.fit(changed(arm, -0.02).plant(data.interval))
+    plant = arm.plant(data.interval)
+
+    def left(start) -> float:
+        count = run.start.samples
+        errors = run.errors(replay(plant, run, data, start=start), data.noise)[:count]
+        return float(np.sum(errors**2))
+
+    anew = left(stretch.fit(plant))
+    assert left(kept) > 2.0 * anew
+    assert left(stretch.follow(plant, kept)) < 1.05 * anew
+
+
+def test_a_start_that_is_carried_along_takes_few_replays(monkeypatch) -> None:
+    arm = Arm.load("thesis-fem")
+    arm, data = prepare(arm, [cut(simulate(arm, "pulse", duration=3.0), 0.95)])
+    (run,) = data.runs
+    stretch = data.stretch(run)
+    fitted = stretch.fit(arm.plant(data.interval))
+    played, play = [], Plant.play
+    monkeypatch.setattr(Plant, "play", lambda *arguments: played.append(1) or play(*arguments))
+    stretch.follow(changed(arm, 1e-3).plant(data.interval), fitted)
+    assert 2 <= len(played) <= 4
+
+
+def test_shapes_of_modes_keep_their_sign() -> None:
+    arm = Arm.load("thesis-fem")
+    plants = [changed(arm, share).plant(0.002) for share in np.linspace(-0.5, 1.0, 40)]
+    tips = np.array([_mode_directions(plant, 4)[0::2, len(plant.model.names) - 2] for plant in plants])
+    assert (tips > 0.0).all()

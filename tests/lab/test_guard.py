@@ -51,3 +51,11 @@ def test_requests(status, request_):
 def test_a_websocket_from_elsewhere_is_closed():
     assert answer(kind="websocket", origin="http://evil.example")[0]["type"] == "websocket.close"
     assert answer(kind="websocket", origin=f"http://{HOSTS[0]}")[0]["type"] != "websocket.close"
+
+
+@pytest.mark.parametrize("request_", [{}, {"host": "evil.example"}, {"origin": "http://evil.example"}])
+def test_no_page_may_frame_an_answer(request_):
+    headers = dict(answer(**request_)[0]["headers"])
+    assert headers[b"content-security-policy"] == b"frame-ancestors 'none'"
+    assert headers[b"x-frame-options"] == b"DENY"
+    assert headers[b"x-content-type-options"] == b"nosniff"

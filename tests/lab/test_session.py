@@ -196,7 +196,7 @@ def test_recordings_are_inspected_as_they_come_and_their_page_is_written(session
     session.write_inspection()
     ((title, work),) = begun
     assert title == "Inspecting"
-    monkeypatch.setattr("flexarm_env.lab.session.overview", lambda arm, recordings, progress: overview_by_hand(CUT))
+    monkeypatch.setattr("flexarm_env.lab.session.overview", lambda arm, recordings, progress, inspection: overview_by_hand(CUT))
     assert CUT.message in work(lambda done, text: None)
     session.use([])
     assert session.inspection is None

@@ -7,6 +7,8 @@ import pytest
 from plant_arms import FRICTION, STATIC, TORQUE_PER_AMP, energy, law, noise, pulse, relative, thesis_plant
 from reference import ReferenceArm, pulse_current, white_noise_current
 
+from flexarm_env import Arm
+from flexarm_env.plant import flat_arrays, structure
 from flexarm_env.plant import layout as at
 
 
@@ -147,3 +149,32 @@ def test_white_noise_never_hangs(elements, laws, changes):
     plant = thesis_plant(elements, laws=laws, **changes)
     for seed in range(2 if changes else 100 if laws is FRICTION else 10):
         assert np.isfinite(plant.replay(noise(seed, 100_000))).all()
+
+
+@pytest.mark.parametrize("name", ["thesis-fem", "cu-flexible", "cu-rigid"])
+def test_a_plant_does_not_depend_on_those_before_it(name: str) -> None:
+    """What plants share is kept: an arm after others has the numbers of the first in a fresh cache, to the last bit."""
+    arm = Arm.load(name)
+    sensor = arm.signals[-1]
+    arms = [
+        arm,
+        arm.with_values({"hub.inertia": 1.1 * arm.value("hub.inertia")}),
+        arm.with_values({f"sensors.{sensor}.offset": 0.1}),
+        arm.with_values({f"sensors.{sensor}.filter": 0.01}),
+        arm.with_effect("coulomb", torque=0.01),
+        arm.with_effect("stribeck", extra=0.01, falloff_speed=0.1),
+        arm.with_effect("current_lag", time=0.01),
+        arm.with_effect("base_tilt", torque=0.01, uphill=0.2),
+    ]
+    alone = []
+    for one in arms:
+        for cache in (structure._assemble_one, flat_arrays._linear_numbers_of_one, flat_arrays._decomposed_one):
+            cache.cache_clear()
+        alone.append(one.plant(0.002))
+    for fresh, one in zip(alone, arms, strict=True):
+        again = one.plant(0.002)
+        assert np.array_equal(fresh.constants, again.constants)
+        assert np.array_equal(fresh.layout, again.layout)
+    assert flat_arrays._linear_numbers_of_one.cache_info().hits > 0
+    assert flat_arrays._decomposed_one.cache_info().hits > 0
+    assert len({plant.constants.tobytes() for plant in alone}) == len(arms)

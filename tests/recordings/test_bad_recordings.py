@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import os
 import time
 from pathlib import Path
@@ -77,6 +78,7 @@ BAD = {
     "binary": (b"\x00\x01\x02" + GOOD.encode(), ["binary", "CSV"]),
     "latin-1": ((GOOD.replace("0.6", "0.6°")).encode("latin-1"), ["row 3", "UTF-8"]),
     "utf-16": (GOOD.encode("utf-16"), ["UTF-8"]),
+    "gzip": (gzip.compress(GOOD.encode(), mtime=0), ["UTF-8"]),
     "zip": (b"PK\x03\x04\xff\xfe\xfd", ["UTF-8"]),
     "condition, bad unit": ("# payload = 0.3 kgg\n" + GOOD, ["row 1", "'kgg'"]),
     "condition, wrong unit": ("# payload = 0.3 m\n" + GOOD, ["row 1", "kg"]),
@@ -107,6 +109,13 @@ def test_absent_file(tmp_path: Path) -> None:
 
 def test_folder_instead_of_file(tmp_path: Path) -> None:
     assert "is a folder" in refusal(tmp_path)
+
+
+def test_a_folder_that_is_named_as_a_recording(tmp_path: Path) -> None:
+    (tmp_path / "x.csv").mkdir()
+    assert "is a folder" in refusal(tmp_path / "x.csv")
+    save(tmp_path, GOOD)
+    assert [one.name for one in Recording.read_all(tmp_path)] == ["run"]
 
 
 def test_symlink_loop(tmp_path: Path) -> None:

@@ -86,6 +86,21 @@ def test_parquet_under_our_own_header(tmp_path: Path) -> None:
     assert np.allclose(Recording.read(path, {"arm_angle": {"sign": -1}}).signals["arm_angle"], -np.pi / 180 * np.arange(N))
 
 
+def test_two_quantities_of_one_parquet_column_are_refused(tmp_path: Path) -> None:
+    path = parquet(tmp_path / "run.parquet", t=TIMES, i=np.arange(N), q=np.arange(N))
+    table = {name: {"column": "q", "unit": unit} for name, unit in (("current", "A"), ("arm_angle", "rad"))}
+    assert "columns 'current' and 'arm_angle': both map to 'q'; correct one of them" in refusal(
+        path, columns={"time": {"column": "t", "unit": "s"}, **table}
+    )
+    arrow = pytest.importorskip("pyarrow")
+    twice = arrow.Table.from_arrays([arrow.array(TIMES), arrow.array(TIMES), arrow.array(TIMES)], names=["t", "q", "q"])
+    pytest.importorskip("pyarrow.parquet").write_table(twice, tmp_path / "twice.parquet")
+    table |= {"current": {"column": "t", "unit": "A"}}
+    assert "column 'arm_angle': the header has 'q' twice" in refusal(
+        tmp_path / "twice.parquet", columns={"time": {"rate": 50}, **table}
+    )
+
+
 def test_parquet_by_a_map_with_lists_and_timestamps(tmp_path: Path) -> None:
     arrow = pytest.importorskip("pyarrow")
     path = parquet(

@@ -109,7 +109,10 @@ def test_a_row_of_tabs_is_empty_cells_where_tabs_part_them(tmp_path: Path) -> No
     ("text", "words"),
     [
         (f"{HEADER}\n" + "1,0.5\n0.1,2,0.6\n0.2,3,0.7\n", "row 2: has 2 cells where 3 are expected; is the row cut off?"),
-        (GOOD + "# end of log\n", "row 5: has 1 cells where 3 are expected; a remark stands before the header"),
+        (
+            GOOD.replace("0.1,2", "# pause\n0.1,2"),
+            "row 3: has 1 cells where 3 are expected; a remark stands before",
+        ),
         (GOOD.replace("0.1,2,0.6\n", "0.1,2,0.60.2"), "row 3: has 5 cells"),
         (GOOD.replace("0.6", '"2,000"'), "'2,000' has a comma, which may mark thousands or decimals; export"),
         (GOOD.replace("0.6", '"-1,234,567"'), "'-1,234,567' has a comma, which may"),
@@ -119,6 +122,17 @@ def test_a_row_of_tabs_is_empty_cells_where_tabs_part_them(tmp_path: Path) -> No
 )
 def test_what_to_do_is_no_advice_that_spoils(tmp_path: Path, text: str, words: str) -> None:
     assert words in refusal(save(tmp_path, text))
+
+
+def test_remarks_after_the_last_row_count_as_those_before_the_header(tmp_path: Path) -> None:
+    whole = Recording.read(save(tmp_path, GOOD))
+    for end in ("# end of log\n", "# end\n\n# stopped by hand", " # end of log\n\n"):
+        recording = Recording.read(save(tmp_path, GOOD + end))
+        assert np.array_equal(recording.signals["arm_angle"], whole.signals["arm_angle"])
+        assert recording.conditions == {}
+    assert Recording.read(save(tmp_path, GOOD + "# payload = 0.3 kg\n")).conditions == {"payload": 0.3}
+    assert "row 5: " in refusal(save(tmp_path, GOOD + "# payload 0.3 kg\n"))
+    assert "has no samples" in refusal(save(tmp_path, f"{HEADER}\n# end of log\n"))
 
 
 def test_a_first_row_cut_off_at_its_start_is_named(tmp_path: Path) -> None:

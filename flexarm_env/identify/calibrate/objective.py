@@ -16,6 +16,7 @@ from flexarm_env.identify.replay.observer import observer_gains
 from flexarm_env.identify.replay.readings import rms_of
 from flexarm_env.identify.replay.replay import replay
 from flexarm_env.identify.replay.run import Run
+from flexarm_env.identify.replay.start_fit import StartFit
 from flexarm_env.identify.settings import FAILED_ERROR
 from flexarm_env.plant.plant import Plant
 
@@ -54,6 +55,26 @@ class ObserverBank:
 
 
 @dataclass(frozen=True)
+class StartBank:
+    """Initial states, fitted once for each recording and carried along while an arm's numbers are fitted.
+
+    Attributes:
+        fitted: by the place of the recording and the number of directions.
+    """
+
+    fitted: dict[tuple[int, int], StartFit] = field(default_factory=dict)
+
+    def start(self, plant: Plant, run: Run, place: int, dataset: Dataset) -> StartFit:
+        """Carry the initial state of a recording along to an arm; fit it to this arm where there is none yet."""
+        stretch = dataset.stretch(run)
+        key = (place, stretch.directions(plant))
+        if key not in self.fitted:
+            self.fitted[key] = stretch.fit(plant)
+            return self.fitted[key]
+        return stretch.follow(plant, self.fitted[key])
+
+
+@dataclass(frozen=True)
 class Objective:
     """The cost of a calibration: whitened replay errors and priors.
 
@@ -64,6 +85,7 @@ class Objective:
         torque_noise: process noise [Nm]; 0 for free replays.
         weights: of errors and values.
         observers: gains of the corrected replays.
+        starts: initial states of the recordings.
     """
 
     arm: Arm
@@ -72,6 +94,7 @@ class Objective:
     torque_noise: float
     weights: Weights
     observers: ObserverBank = field(default_factory=ObserverBank, repr=False, compare=False)
+    starts: StartBank = field(default_factory=StartBank, repr=False, compare=False)
 
     def residual(self, x: Floats) -> Floats:
         """Compute the errors over sigma (rows,), run by run, sample by sample, signal by signal."""
@@ -84,7 +107,7 @@ class Objective:
 
     def held_out_residual_of(self, arm: Arm) -> Floats:
         """Compute the residual of another arm on the part held out, from observers of its own."""
-        own = replace(self, observers=ObserverBank())
+        own = replace(self, observers=ObserverBank(), starts=StartBank())
         runs = self.dataset.runs
         triples = zip(runs, own._errors(arm, runs), self.weights.sigma, strict=True)
         return self._bounded([(error[~run.train] / sigma).ravel() for run, error, sigma in triples])
@@ -124,10 +147,11 @@ class Objective:
         dataset, plants = self.dataset, self.dataset.plants(arm)
         judges_free_run = error_measure(arm).judges_free_run
         errors = []
-        for run in runs:
+        for place, run in enumerate(runs):
             plant = plants[run.payload]
             gains = self.observers.gains(arm, plant, run, dataset, self.torque_noise) if self.torque_noise > 0.0 else None
-            errors.append(run.errors(replay(plant, run, dataset, gains)))
+            start = self.starts.start(plant, run, place, dataset)
+            errors.append(run.errors(replay(plant, run, dataset, gains, start)))
             if not judges_free_run:
                 errors[-1][: round(dataset.settings.preparation.settling / dataset.interval)] = 0.0
         return errors

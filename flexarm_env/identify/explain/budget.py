@@ -9,13 +9,12 @@ from itertools import pairwise
 from typing import Any
 
 from flexarm_env.identify.explain.error_steps import ErrorStep
+from flexarm_env.identify.percent import percent
 from flexarm_env.identify.replay.error_measure import SignalError, excess
 from flexarm_env.identify.settings import Settings
 from flexarm_env.sensors import known_sensors
 
 REST = "rest"
-#: Decimals of a share in percent.
-MOST_DIGITS = 3
 
 
 @dataclass(frozen=True)
@@ -112,15 +111,6 @@ def torque_notes(found: Budget, effects: Sequence[str]) -> list[str]:
     causes = {"nominal": "as given", "constants": "constants refitted", "final": f"with {' and '.join(effects)}"}
     parts = [f"{torque:.2g} ({causes[name]})" for name, torque in known.items()]
     return [f"unexplained torque on the moving hub, rms with the noise of its estimate: {' → '.join(parts)} Nm"]
-
-
-def percent(share: float) -> str:
-    """Format a share with the digits that tell it from 0 and 1: "57 %", "99.4 %", "0.02 %"."""
-    apart = min(abs(share), abs(1.0 - share))
-    digits = max(0, math.ceil(-math.log10(apart)) - 2) if apart else 0
-    if digits > MOST_DIGITS:
-        return f"{100 * round(share)} %"
-    return f"{100 * share:.{digits}f} %".replace("-", "−")
 
 
 def _worse(step: ErrorStep, settings: Settings) -> Iterator[str]:

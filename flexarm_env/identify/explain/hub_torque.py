@@ -59,12 +59,22 @@ def hub_torque(arm: Arm, recordings: Sequence[Recording], settings: Settings = S
     Raises:
         InputError: for recordings that do not fit the arm.
     """
-    reduced, dataset = prepare(without_hub_effects(arm), recordings, settings)
-    plants, step = dataset.plants(reduced), settings.explaining.torque_step * torque_scale(reduced, dataset.runs)
+    return hub_torque_of(*prepare(without_hub_effects(arm), recordings, settings))
+
+
+def hub_torque_of(arm: Arm, dataset: Dataset) -> list[HubMotion]:
+    """Estimate the torque on the hub as `hub_torque` does, from recordings that are prepared.
+
+    Args:
+        arm: with the sensors of the dataset; effects that act on the hub are left out.
+        dataset: the recordings.
+    """
+    free, numbers = without_hub_effects(arm), dataset.settings.explaining
+    plants, step = dataset.plants(free), numbers.torque_step * torque_scale(free, dataset.runs)
     smoothers = {}
     for payload in plants:
-        linear = with_payload(reduced, payload).linearise("moving", dataset.interval)
-        smoothers[payload] = _smoother(linear, dataset.noise, step, settings.explaining)
+        linear = with_payload(free, payload).linearise("moving", dataset.interval)
+        smoothers[payload] = _smoother(linear, dataset.noise, step, numbers)
     return [
         smoothers[run.payload].smooth(run, plants[run.payload].delayed(run.command), dataset)
         for run in dataset.runs

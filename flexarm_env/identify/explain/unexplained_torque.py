@@ -3,36 +3,33 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.explain.hub_torque import acts_on_hub, hub_torque, law_torque
-from flexarm_env.identify.settings import SETTINGS, Settings
-from flexarm_env.recordings.recording import Recording
+from flexarm_env.identify.explain.hub_torque import acts_on_hub, hub_torque_of, law_torque
+from flexarm_env.identify.replay.dataset import Dataset
 
 
-def unexplained_torque(arm: Arm, recordings: Sequence[Recording], settings: Settings = SETTINGS) -> float:
+def unexplained_torque(arm: Arm, dataset: Dataset) -> float:
     """Compute the rms torque [Nm] on the moving hub, estimated from the recordings, less that of the arm's effects.
 
     It is NaN where no torque can be estimated: nothing moves, sampling is uneven, or the sensors do not show the hub. It holds
     the noise of the sensors, and therefore does not fall to 0.
 
     Args:
-        arm: with its effects.
-        recordings: of the machine.
-        settings: numbers of the method.
+        arm: with its effects, and the sensors of the dataset.
+        dataset: the recordings, at the samples that were kept of them.
     """
     try:
-        motions = hub_torque(arm, recordings, settings)
+        motions = hub_torque_of(arm, dataset)
     except np.linalg.LinAlgError:  # no steady filter: the sensors do not see the hub
         return math.nan
     names = [name for name in arm.effects if acts_on_hub(arm, name)]
     fastest = max((float(np.abs(one.speed).max(initial=0.0)) for one in motions), default=0.0)
     left = []
     for one in motions:
-        moves = np.abs(one.speed) > settings.explaining.moving * fastest
+        moves = np.abs(one.speed) > dataset.settings.explaining.moving * fastest
         law = law_torque(arm, names, one.angle[moves], one.speed[moves], one.time[moves])
         left.append(one.torque[moves] - law)
     every = np.concatenate([np.zeros(0), *left])

@@ -50,15 +50,20 @@ def agreement(measured: Floats, modelled: Floats, cell: float, numbers: MotionFa
         cell: length of a cell [s].
         numbers: of the method.
     """
-    length = min(max(round(numbers.window / cell), numbers.least_window_cells), len(measured))
-    count = len(measured) // length
-    y, p = (_without_line(part[: count * length].reshape(count, length)) for part in (measured, modelled))
+    y, p = (in_windows(part, cell, numbers) for part in (measured, modelled))
     known = np.isfinite(y).all(axis=1) & np.isfinite(p).all(axis=1)
     y, p = y[known], p[known]
     own, model, both = float((y * y).sum()), float((p * p).sum()), float((y * p).sum())
     if not own * model > 0.0:
         return NOTHING_IN_COMMON
     return Agreement(both / model, 0.0, both / own * both / model, own / y.size)
+
+
+def in_windows(values: Floats, cell: float, numbers: MotionFaults) -> Floats:
+    """Cut values (cells,) into windows (windows, cells), each without its mean and slope."""
+    length = min(max(round(numbers.window / cell), numbers.least_window_cells), len(values))
+    count = len(values) // length
+    return _without_line(values[: count * length].reshape(count, length))
 
 
 def agreement_late(measured: Floats, modelled: Floats, cell: float, numbers: MotionFaults) -> Agreement:
@@ -82,9 +87,13 @@ def agreement_late(measured: Floats, modelled: Floats, cell: float, numbers: Mot
 
 def _at_lag(measured: Floats, modelled: Floats, lag: float, cell: float, numbers: MotionFaults) -> Agreement:
     """Fit a gain at a lag [s]."""
-    cells = np.arange(len(modelled))
-    moved = np.interp(cells - lag / cell, cells, modelled, left=np.nan, right=np.nan)
-    return replace(agreement(measured, moved, cell, numbers), lag=lag)
+    return replace(agreement(measured, delayed(modelled, lag / cell), cell, numbers), lag=lag)
+
+
+def delayed(values: Floats, cells: float) -> Floats:
+    """Delay values (cells,) by a number of cells, or advance them; NaN where nothing is known."""
+    place = np.arange(len(values))
+    return np.interp(place - cells, place, values, left=np.nan, right=np.nan)
 
 
 def _likely_lags(measured: Floats, modelled: Floats, cell: float, numbers: MotionFaults) -> list[float]:

@@ -13,12 +13,12 @@ from flexarm_env.identify.inspect.glued import glued
 from flexarm_env.identify.inspect.held import held
 from flexarm_env.identify.inspect.limit import limit
 from flexarm_env.identify.inspect.rail import rail
+from flexarm_env.identify.inspect.series import Inspected
 from flexarm_env.identify.inspect.spike import spike
 from flexarm_env.identify.inspect.wrap import wrap
 from flexarm_env.identify.settings import Inspecting
-from flexarm_env.recordings.recording import Recording
 
-#: A check takes a recording, the arm and the numbers of the inspection.
-Check = Callable[[Recording, Arm, Inspecting], list[Fault]]
+#: A check takes a recording with its noise, the arm and the numbers of the inspection.
+Check = Callable[[Inspected, Arm, Inspecting], list[Fault]]
 
 CHECKS: tuple[Check, ...] = (constant, limit, wrap, held, dropout, spike, glued, rail, frozen)

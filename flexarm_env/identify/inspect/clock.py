@@ -13,11 +13,12 @@ from flexarm_env.identify.inspect.series import HUB
 def late_signals(evidence: Evidence) -> list[Fault]:
     """Find a lag that all signals have in common, or that of single signals beside others that are in time."""
     off = {signal: found.lag for signal, found in evidence.late.items() if _is_late(evidence, signal)}
-    lags = list(off.values())
-    if off and len(off) == len(evidence.late) and max(lags) - min(lags) < evidence.numbers.same_lag:
-        return [_fault(evidence, "", float(np.median(lags)))]
+    if len(off) == len(evidence.late) or _are_late_together(evidence):
+        lags = [found.lag for found in evidence.late.values()]
+        if max(lags) - min(lags) < evidence.numbers.same_lag:
+            return [clock_fault(evidence, "", float(np.median(lags)))]
     return _hub_out_of_step(evidence) or [
-        _fault(evidence, signal, lag) for signal, lag in off.items() if _others_are_in_time(evidence, signal)
+        clock_fault(evidence, signal, lag) for signal, lag in off.items() if _others_are_in_time(evidence, signal)
     ]
 
 
@@ -29,7 +30,18 @@ def _hub_out_of_step(evidence: Evidence) -> list[Fault]:
     if found.share < numbers.alike or abs(found.lag) < numbers.least_lag or not found.is_within(numbers.least_factor):
         return []
     angle, speed = (evidence.at_once[signal].share for signal in HUB)
-    return [_fault(evidence, HUB[0], found.lag) if angle < speed else _fault(evidence, HUB[1], -found.lag)]
+    return [clock_fault(evidence, HUB[0], found.lag) if angle < speed else clock_fault(evidence, HUB[1], -found.lag)]
+
+
+def _are_late_together(evidence: Evidence) -> bool:
+    """Whether one of several signals agrees with the model at a lag, and all others move as the model does at a lag.
+
+    Where these lags are one, no effect and no constants explain them: those change the phase of each signal by another time.
+    """
+    numbers, late = evidence.numbers, evidence.late
+    similar = all(found.share > numbers.similar and found.is_within(numbers.plausible) for found in late.values())
+    later = all(abs(late[signal].lag) > numbers.least_lag and evidence.is_like_model_later(signal) for signal in late)
+    return len(late) > 1 and similar and later and max(found.share for found in late.values()) > numbers.alike
 
 
 def _is_late(evidence: Evidence, signal: str) -> bool:
@@ -50,7 +62,8 @@ def _others_are_in_time(evidence: Evidence, signal: str) -> bool:
     return any(other.share > numbers.similar and abs(other.lag) < numbers.same_lag for other in beside)
 
 
-def _fault(evidence: Evidence, signal: str, lag: float) -> Fault:
+def clock_fault(evidence: Evidence, signal: str, lag: float) -> Fault:
+    """Describe the lag [s] of a signal, or of all."""
     time, late = f"{abs(lag):.3g} s", "late" if lag > 0.0 else "early"
     text = f"is {time} {late} against the model's" if signal else f"all signals are {time} {late} against the command"
     return fault(evidence.recording, signal, "clock", lag, text, f'{signal or "time"} = {{ shift = "{lag:.3g} s" }}')

@@ -7,14 +7,14 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.report import fault, shown
-from flexarm_env.identify.inspect.series import Series, partners
+from flexarm_env.identify.inspect.series import Inspected, partners
 from flexarm_env.identify.settings import Inspecting
-from flexarm_env.recordings.recording import Recording
 
 
-def constant(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
+def constant(inspected: Inspected, arm: Arm, numbers: Inspecting) -> list[Fault]:
     """Find a signal whose readings are all equal though those that rest with it move, or though it alone shows no noise."""
-    series = {signal: Series.of(recording, signal, numbers) for signal in recording.signals}
+    recording = inspected.recording
+    series = {signal: inspected.series(signal, numbers) for signal in recording.signals}
     still = [signal for signal, one in series.items() if len(one) and not np.ptp(one.values)]
     found = []
     for signal in still:

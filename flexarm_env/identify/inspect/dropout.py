@@ -7,17 +7,17 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.report import fault, ignore, row_list, shown
-from flexarm_env.identify.inspect.series import Series
+from flexarm_env.identify.inspect.series import Inspected
 from flexarm_env.identify.inspect.wild import split
 from flexarm_env.identify.settings import Inspecting
-from flexarm_env.recordings.recording import Recording
 
 
-def dropout(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
+def dropout(inspected: Inspected, arm: Arm, numbers: Inspecting) -> list[Fault]:
     """Find readings that stand off the signal and are equal to each other or 0."""
+    recording = inspected.recording
     found = []
     for signal in recording.signals:
-        series = Series.of(recording, signal, numbers)
+        series = inspected.series(signal, numbers)
         _, lost = split(series, numbers)
         if not len(lost.first):
             continue

@@ -39,6 +39,8 @@ from flexarm_env.parameters import INPUTS, Parameter
 from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
+#: Change of x (x,) and of the residual (rows,) per change of the logarithm of the common scale.
+Along = tuple[Floats, Floats]
 
 
 def estimate_excitation(
@@ -82,7 +84,8 @@ def excitation_of(arm: Arm, dataset: Dataset, progress: Progress) -> Excitation:
     for number, name in enumerate(names):
         effects.at(number / len(names), name)
         found.append(_effect(base, name, rise_of))
-    return Excitation(tuple(_constants(base)), tuple(found), _common_scale(base))
+    along = _along_common_scale(base)
+    return Excitation(tuple(_constants(base, along)), tuple(found), _common_scale(base, along))
 
 
 def _baseline(arm: Arm, dataset: Dataset) -> Baseline:
@@ -99,19 +102,19 @@ def _baseline(arm: Arm, dataset: Dataset) -> Baseline:
     return baseline_of(objective, steps.adapted(np.ones(len(wide.residual)), wide.jacobian, grow=True).now)
 
 
-def _constants(base: Baseline) -> list[ConstantExcitation]:
+def _constants(base: Baseline, along: Along) -> list[ConstantExcitation]:
     """Estimate the interval of each constant, over wide differences and over narrow ones, whichever gives more."""
     objective, settings = base.objective, base.objective.dataset.settings
     parameters = objective.parameters
     narrow = jacobian(objective.residual, base.x, np.full(len(base.x), settings.refining.difference))
-    posterior = np.maximum(_deviations(base, base.jacobian), _deviations(base, narrow))
+    posterior = np.maximum(_deviations(base, base.jacobian, along), _deviations(base, narrow, along))
     triples = zip(parameters, parameters.priors, posterior, strict=True)
     return [_constant(base.arm, parameter, float(prior), float(after), settings) for parameter, prior, after in triples]
 
 
-def _deviations(base: Baseline, slopes: Floats) -> Floats:
+def _deviations(base: Baseline, slopes: Floats, along: Along) -> Floats:
     """Estimate the standard deviations (x,) that slopes of the innovations (rows, x) and the priors leave."""
-    exact = _with_common_scale(base, slopes)
+    exact = _with_common_scale(slopes, along)
     information = exact.T @ exact + np.diag(base.objective.parameters.priors**-2.0)
     return np.asarray(np.sqrt(np.diag(np.linalg.inv(information))), dtype=np.float64)
 
@@ -126,26 +129,26 @@ def _constant(arm: Arm, parameter: FitParameter, prior: float, posterior: float,
     return ConstantExcitation(parameter.path, value, half_width, width * prior, arm.parameter(parameter.path).unit, state)
 
 
-def _with_common_scale(base: Baseline, slopes: Floats) -> Floats:
+def _with_common_scale(slopes: Floats, along: Along) -> Floats:
     """Correct slopes (rows, x) along the common scale of forces.
 
     Most motion does not show it, and differences of one value at a time are not exact enough to show that nothing changes.
     """
-    along, change = _along_common_scale(base)
-    return slopes + np.outer(change - slopes @ along, along / max(float(along @ along), LEAST_NORM))
+    moved, change = along
+    return slopes + np.outer(change - slopes @ moved, moved / max(float(moved @ moved), LEAST_NORM))
 
 
-def _common_scale(base: Baseline) -> str:
+def _common_scale(base: Baseline, along: Along) -> str:
     """Judge whether the innovations give the common scale better than the priors together."""
-    along, change = _along_common_scale(base)
-    if not along.any():
+    moved, change = along
+    if not moved.any():
         return ""
-    of_priors = float(np.sum((along / base.objective.parameters.priors) ** 2))
+    of_priors = float(np.sum((moved / base.objective.parameters.priors) ** 2))
     shown = base.objective.dataset.settings.excitation.shown
     return SHOWN if of_priors <= shown**2 * (of_priors + float(change @ change)) else NOT_SHOWN
 
 
-def _along_common_scale(base: Baseline) -> tuple[Floats, Floats]:
+def _along_common_scale(base: Baseline) -> Along:
     """Compute the change of x (x,) and of the residual (rows,) per change of the common scale's logarithm."""
     objective, parameters = base.objective, base.objective.parameters
     powers = force_powers(base.arm, parameters)

@@ -28,30 +28,57 @@ def _of_signals(evidence: Evidence) -> list[Fault]:
     if not evidence.model_holds:
         return []
     for signal, now in evidence.at_once.items():
-        off = now.share > numbers.same_shape and now.gain > 0.0 and not now.is_within(numbers.least_factor)
+        least = numbers.similar if signal not in HUB and _of_beam(evidence, signal) else numbers.same_shape
+        off = now.share > least and now.gain > 0.0 and not now.is_within(numbers.least_factor)
         if off and _hub_concurs(evidence, signal) and _is_beyond_calibration(evidence, signal, now):
             found.append(factor_fault(evidence, signal, _size(evidence, signal, now.gain)))
     return found
 
 
 def _size(evidence: Evidence, signal: str, gain: float) -> float:
-    """Compute a factor from angle and speed beside each other, which no constant of the model changes; else take the gain.
+    """Compute a factor beside other signals that the model's constants change alike; else take the gain.
 
-    Both are noisy: the geometric mean of the regressions on either side has no more than half of the bias of one.
+    Angle and speed are compared without the model. Both are noisy: the geometric mean of the regressions on either side has no
+    more than half of the bias of one. A signal of the beam is compared with the others of the beam.
     """
-    if evidence.hub is None or signal not in HUB:
+    if signal not in HUB:
+        beside = _of_beam(evidence, signal)
+        return gain / float(np.median([other.gain for other in beside])) if beside else gain
+    if evidence.hub is None:
         return gain
     angle_over_speed = evidence.hub.gain / math.sqrt(evidence.hub.share)
     return angle_over_speed if signal == "arm_angle" else 1.0 / angle_over_speed
 
 
+def is_relative(evidence: Evidence, signal: str) -> bool:
+    """Whether a factor of a signal is computed beside another signal, so that the model's constants do not change it."""
+    return evidence.hub is not None if signal in HUB else bool(_of_beam(evidence, signal))
+
+
+def _of_beam(evidence: Evidence, signal: str) -> list[Agreement]:
+    """List the agreements of the other signals of the beam that move as the model's do, at about its size."""
+    numbers = evidence.numbers
+    beside = {other: found for other, found in evidence.at_once.items() if other not in HUB and other != signal}
+    return [found for found in beside.values() if found.share > numbers.similar and found.is_within(numbers.least_factor)]
+
+
 def _is_beyond_calibration(evidence: Evidence, signal: str, found: Agreement) -> bool:
-    """Whether a factor leaves hardly more than noise, or is beyond the spreads of the sensor's gain and the beam's stiffness."""
+    """Whether a factor leaves hardly more than noise, or is beyond the spreads of the sensor's gain and the beam's stiffness.
+
+    The stiffness changes all signals of the beam, and is no part of a factor beside another of them.
+    """
     arm = evidence.arm
     gain = arm.parameter(f"sensors.{signal}.gain").spread
-    beam = arm.parameter(STIFFNESS).spread if signal not in HUB else 0.0
-    far = abs(math.log(found.gain)) > evidence.numbers.spreads * math.hypot(gain, beam)
+    beam = 0.0 if is_relative(evidence, signal) or signal in HUB else arm.parameter(STIFFNESS).spread
+    far = abs(math.log(_size(evidence, signal, found.gain))) > evidence.numbers.spreads * math.hypot(gain, beam)
     return far or evidence.run.leaves_noise(signal, found)
+
+
+def _rough_size(evidence: Evidence, signal: str) -> float:
+    """Compute a factor over the middle gain of the signals beside it, those of the beam if it is of the beam."""
+    now, others = evidence.at_once[signal], evidence.others(signal)
+    beside = (_of_beam(evidence, signal) if signal not in HUB else []) or others
+    return now.gain / float(np.median([other.gain for other in beside]))
 
 
 def _hub_concurs(evidence: Evidence, signal: str) -> bool:
@@ -91,5 +118,7 @@ def _of_one_signal(evidence: Evidence) -> list[Fault]:
         if judged and alike and max(gains) < numbers.plausible * min(gains):
             nearest = min(abs(math.log(now.gain / gain)) for gain in gains)
             if nearest > math.log(numbers.far_apart):
-                found.append(factor_fault(evidence, signal, now.gain / float(np.median(gains)), roughly=True))
+                found.append(
+                    factor_fault(evidence, signal, _rough_size(evidence, signal), roughly=not is_relative(evidence, signal))
+                )
     return found

@@ -18,8 +18,23 @@ USUAL_UNITS = {
     "V": {"mV": "1000"},
     "m": {"mm": "1000", "cm": "100"},
 }
-#: Edges that a decoder counts for each line of an encoder.
-QUADRATURE = 4
+#: Edges that a decoder counts for each line of an encoder: unit, words and number.
+QUADRATURE = (("", "4 (edges of an encoder for its lines)", 4), ("", "1/4 (lines of an encoder for its edges)", 1 / 4))
+#: Numbers by which quantities are off from each other: turns, minutes, halves, decades.
+USUAL_NUMBERS = tuple(
+    ("", words, number)
+    for plain, below, one in (
+        ("2", "2", 2),
+        ("4", "4", 4),
+        ("10", "10", 10),
+        ("100", "100", 100),
+        ("1000", "1000", 1000),
+        ("2π", "(2π)", math.tau),
+        ("60/(2π)", "(60/(2π))", 60 / math.tau),
+        ("180/π", "(180/π)", 360 / math.tau),
+    )
+    for words, number in ((plain, one), (f"1/{below}", 1 / one))
+)
 #: Factors from here on are written without digits behind the point.
 LARGE = 100
 
@@ -35,10 +50,9 @@ def factor_fault(evidence: Evidence, signal: str, value: float, rival: str = "",
         roughly: whether the model is wrong elsewhere, too, so that the value is no more than an estimate.
     """
     # The constants of the model, too, change the factor of a command, of an only signal, or beside a wrong model.
-    numbers = evidence.numbers
-    close = numbers.likely_factor if roughly or rival or signal in INPUTS else numbers.known_factor
-    unit, words, number = _known(evidence, signal, value, close)
-    size = f"about {_number(value)}" if roughly else _number(value)
+    numbers, is_rough = evidence.numbers, roughly or bool(rival) or signal in INPUTS
+    unit, words, number = _known(evidence, signal, value, is_rough)
+    size = f"about {_number(value)}" if is_rough else _number(value)
     if words:
         size += f" = {words}" if abs(math.log(value / number)) < numbers.known_factor else f", probably {words}"
     also = f" (or {rival} is {_number(1.0 / value)} of it: with one signal alone the two look alike)" if rival else ""
@@ -56,17 +70,17 @@ def _number(value: float) -> str:
     return f"{float(rounded):.0f}" if abs(value) >= LARGE else rounded
 
 
-def _known(evidence: Evidence, signal: str, value: float, close: float) -> tuple[str, str, float]:
-    """Look up the unit that a factor stands for and the known number that it equals, in words and as a number, or itself."""
+def _known(evidence: Evidence, signal: str, value: float, is_rough: bool) -> tuple[str, str, float]:
+    """Look up the unit that a factor stands for and the known number that it equals, in words and as a number, or itself.
+
+    Any usual number may be meant by a factor that is known roughly; an exact one must be that of a unit, the gear or the encoder.
+    """
+    close = evidence.numbers.likely_factor if is_rough else evidence.numbers.known_factor
     unit = INPUTS.get(signal) or evidence.arm.sensor(signal).unit
-    for other, words in USUAL_UNITS.get(unit, {}).items():
-        if abs(math.log(value * unit_factor(other, unit))) < close:
-            return other, words, 1.0 / unit_factor(other, unit)
+    units = [(other, words, 1.0 / unit_factor(other, unit)) for other, words in USUAL_UNITS.get(unit, {}).items()]
     ratio = evidence.arm.constants["drive"]["gear_ratio"]
-    sides = {"the gear ratio": ratio, "1/(gear ratio)": 1.0 / ratio}
-    counts = {"4 (edges of an encoder for its lines)": QUADRATURE, "1/4 (lines of an encoder for its edges)": 1.0 / QUADRATURE}
-    numbers = {"arm_angle": sides | counts, "motor_speed": sides}
-    for words, number in numbers.get(signal, {}).items():
-        if abs(math.log(value / number)) < close and abs(math.log(number)) > close:
-            return "", words, number
-    return "", "", value
+    sides = [("", "the gear ratio", ratio), ("", "1/(gear ratio)", 1.0 / ratio)] if ratio != 1.0 else []
+    own = {"arm_angle": [*sides, *QUADRATURE], "motor_speed": sides}.get(signal, [])
+    known = [*units, *own, *(USUAL_NUMBERS if is_rough else ())]
+    unit, words, number = min(known, key=lambda one: abs(math.log(value / one[2])), default=("", "", value))
+    return (unit, words, number) if abs(math.log(value / number)) < close else ("", "", value)

@@ -84,14 +84,21 @@ class Replayer:
     """An arm and one recording, prepared for free runs.
 
     Attributes:
+        arm: with the sensors of the recording, and their noise.
         plant: the arm with the recording's payload.
         dataset: the recording alone, with its initial state, and the noise of the signals that give that.
         noise: (signals,) standard deviation of the readings.
     """
 
+    arm: Arm
     plant: Plant
     dataset: Dataset
     noise: Floats
+
+    def of(self, arm: Arm) -> Replayer:
+        """Replay the recording by another arm, with other constants."""
+        (plant,) = self.dataset.plants(arm).values()
+        return replace(self, arm=arm, plant=plant)
 
     def free_run(self, command_factor: float = 1.0) -> FreeRun:
         """Replay the commands divided by a factor."""
@@ -115,7 +122,7 @@ def replayer(arm: Arm, recording: Recording, settings: Settings) -> Replayer:
     """
     reduced, dataset = prepare(arm, [recording], settings)
     (plant,) = dataset.plants(reduced).values()
-    tried = [Replayer(plant, started, dataset.noise) for started in _starts(dataset)]
+    tried = [Replayer(reduced, plant, started, dataset.noise) for started in _starts(dataset)]
     return max(tried, key=_agreed) if len(tried) > 1 else tried[0]
 
 
@@ -130,7 +137,7 @@ def _starts(dataset: Dataset) -> Iterator[Dataset]:
     if not (run.start.moving or run.start.vibrating):
         return
     for column, signal in enumerate(dataset.signals):
-        start = find_start(run.time, run.measured[:, [column]], [signal], dataset.noise[[column]], settings)
+        start = find_start(run.time, run.command, run.measured[:, [column]], [signal], dataset.noise[[column]], settings)
         others = np.full_like(dataset.noise, np.inf)
         others[column] = dataset.noise[column]
         yield replace(dataset, runs=(replace(run, start=start),), noise=others)

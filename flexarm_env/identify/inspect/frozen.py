@@ -9,15 +9,15 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.report import fault, ignore, row_list, shown
-from flexarm_env.identify.inspect.series import Integers, Series, partners
+from flexarm_env.identify.inspect.series import Inspected, Integers, Series, partners
 from flexarm_env.identify.settings import Inspecting
-from flexarm_env.recordings.recording import Recording
 
 
-def frozen(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
+def frozen(inspected: Inspected, arm: Arm, numbers: Inspecting) -> list[Fault]:
     """Find stretches of equal readings that are longer than chance allows a signal that flickers, while others go on."""
+    recording = inspected.recording
     found = []
-    every = {signal: Series.of(recording, signal, numbers) for signal in recording.signals}
+    every = {signal: inspected.series(signal, numbers) for signal in recording.signals}
     for signal, series in every.items():
         readings = still(series, numbers) if series.flicker > numbers.flickers else np.zeros(0, dtype=np.int64)
         if not readings.size or all(one.stands_still(series.rows[readings], numbers) for one in partners(signal, every)):

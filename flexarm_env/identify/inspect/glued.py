@@ -10,20 +10,20 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.report import fault, quantity
-from flexarm_env.identify.inspect.series import Floats, Series
+from flexarm_env.identify.inspect.series import Floats, Inspected, Series
 from flexarm_env.identify.inspect.wild import usual_change
 from flexarm_env.identify.inspect.wrap import wraps
 from flexarm_env.identify.settings import Inspecting
 from flexarm_env.recordings.columns import UNITS
-from flexarm_env.recordings.recording import Recording
 
 
-def glued(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
+def glued(inspected: Inspected, arm: Arm, numbers: Inspecting) -> list[Fault]:
     """Find samples at which a signal jumps and all stand as the recording began, or at which several jump at once.
 
     Across a gap signals go on meanwhile, so that several may well have changed.
     """
-    series = {signal: Series.of(recording, signal, numbers) for signal in recording.signals}
+    recording = inspected.recording
+    series = {signal: inspected.series(signal, numbers) for signal in recording.signals}
     sudden: Counter[int] = Counter()
     for signal, one in series.items():
         for row, is_sudden in _jumps(one, recording.time[one.rows], UNITS[signal] == "rad", numbers):

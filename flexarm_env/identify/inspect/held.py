@@ -7,16 +7,16 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.report import fault
-from flexarm_env.identify.inspect.series import Floats, Series
+from flexarm_env.identify.inspect.series import Floats, Inspected, Series
 from flexarm_env.identify.settings import Inspecting
-from flexarm_env.recordings.recording import Recording
 
 
-def held(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
+def held(inspected: Inspected, arm: Arm, numbers: Inspecting) -> list[Fault]:
     """Find signals that change at an even beat of several rows, by more than a step."""
+    recording = inspected.recording
     found = []
     for signal in recording.signals:
-        count = repeats(Series.of(recording, signal, numbers), numbers)
+        count = repeats(inspected.series(signal, numbers), numbers)
         if count:
             text = f"repeats {count:.3g} by {count:.3g}: its sensor is slower than the rows of the file"
             found.append(fault(recording, signal, "held", count, text, f"{signal} = {{ repeats = {round(count)} }}"))

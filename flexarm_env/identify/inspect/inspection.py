@@ -13,9 +13,9 @@ from flexarm_env.identify.inspect.catalogue import CHECKS
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.mend import mended
 from flexarm_env.identify.inspect.motion import motion_faults, moves_as_model
+from flexarm_env.identify.inspect.series import Inspected
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.recordings.columns import UNITS
-from flexarm_env.recordings.noise import Readings, estimate_noise
 from flexarm_env.recordings.recording import Recording
 
 
@@ -91,14 +91,16 @@ def inspect_recordings(arm: Arm, recordings: Sequence[Recording], settings: Sett
     """
     began = time.perf_counter()
     faults: list[Fault] = []
-    sound = []
+    sound: list[Recording] = []
+    facts: list[SignalFacts] = []
     for recording in recordings:
-        found, left = reading_faults(arm, recording, settings)
+        inspected = Inspected.of(recording)
+        found, left = reading_faults(arm, inspected, settings)
         faults += found
         sound.append(left)
+        facts += [_facts(inspected, signal) for signal in recording.signals]
     faults = with_motion_faults(arm, recordings, sound, faults, settings)
-    facts = tuple(_facts(r, signal) for r in recordings for signal in r.signals)
-    return Inspection(tuple(faults), facts, tuple(sound), time.perf_counter() - began)
+    return Inspection(tuple(faults), tuple(facts), tuple(sound), time.perf_counter() - began)
 
 
 def with_motion_faults(
@@ -122,19 +124,20 @@ def with_motion_faults(
     return faults + motion_faults(arm, sound, settings)
 
 
-def reading_faults(arm: Arm, recording: Recording, settings: Settings = SETTINGS) -> tuple[list[Fault], Recording]:
+def reading_faults(arm: Arm, inspected: Inspected, settings: Settings = SETTINGS) -> tuple[list[Fault], Recording]:
     """Find the faults of a recording that its readings show without a model, and mend them in memory."""
     faults: list[Fault] = []
     for check in CHECKS:
-        found = check(recording, arm, settings.inspecting)
+        counted = {one.signal for one in faults if one.kind == "wrap"}
+        found = [one for one in check(inspected, arm, settings.inspecting) if one.kind != "rail" or one.signal not in counted]
         faults += found
-        recording = mended(recording, found)
-    return faults, recording
+        inspected = replace(inspected, recording=mended(inspected.recording, found))
+    return faults, inspected.recording
 
 
-def _facts(recording: Recording, signal: str) -> SignalFacts:
+def _facts(inspected: Inspected, signal: str) -> SignalFacts:
+    recording, found = inspected.recording, inspected.noise[signal]
     values = recording.signals[signal][np.isfinite(recording.signals[signal])]
     low, high = (float(f(values)) if len(values) else float("nan") for f in (np.min, np.max))
-    found = estimate_noise([Readings(recording.time, recording.signals[signal])])
     step, noise = (found.resolution, found.total) if found else (0.0, None)
     return SignalFacts(recording.name, signal, UNITS[signal], low, high, len(values), step, noise)

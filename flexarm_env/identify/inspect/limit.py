@@ -6,14 +6,16 @@ import numpy as np
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.fault import Fault
-from flexarm_env.identify.inspect.report import fault, percent, quantity
+from flexarm_env.identify.inspect.report import fault, quantity
+from flexarm_env.identify.inspect.series import Inspected
+from flexarm_env.identify.percent import percent
 from flexarm_env.identify.settings import Inspecting
 from flexarm_env.parameters import INPUTS
-from flexarm_env.recordings.recording import Recording
 
 
-def limit(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
+def limit(inspected: Inspected, arm: Arm, numbers: Inspecting) -> list[Fault]:
     """Find commands above the limit of the arm's drive, unless the arm itself cuts them off."""
+    recording = inspected.recording
     largest = arm.constants["drive"]["limit"]
     if not largest or recording.input_kind != arm.input or "saturation" in arm.effects:
         return []

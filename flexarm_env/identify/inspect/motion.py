@@ -11,6 +11,7 @@ from flexarm_env.identify.inspect.factor import factors
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.in_common import in_common
 from flexarm_env.identify.inspect.sign import signs
+from flexarm_env.identify.inspect.sized import sized
 from flexarm_env.identify.inspect.swap import exchanged_signals
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.recordings.recording import Recording
@@ -49,7 +50,7 @@ def motion_faults(arm: Arm, recordings: Sequence[Recording], settings: Settings 
     with_signals = [one for one in recordings if set(one.signals) & set(arm.signals)]  # else the readings of all were at fault
     evidence = [gather(arm, recording, settings) for recording in with_signals]
     found: list[list[Fault]] = [next((faults for check in MOTION_CHECKS if (faults := check(one))), []) for one in evidence]
-    return in_common(evidence, found)
+    return sized(evidence, in_common(evidence, found))
 
 
 def moves_as_model(arm: Arm, recordings: Sequence[Recording], settings: Settings = SETTINGS) -> bool:

@@ -10,11 +10,13 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.estimate_excitation import excitation_of
 from flexarm_env.identify.inspect.excitation import Excitation
 from flexarm_env.identify.inspect.inspection import Inspection, SignalFacts, inspect_recordings
+from flexarm_env.identify.inspect.restart import restart
 from flexarm_env.identify.progress import Progress, ProgressCallback
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.preflight import preflight
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.parameters import INPUTS, reading_noise
+from flexarm_env.recordings.clock import RestartError
 from flexarm_env.recordings.recording import Recording
 
 
@@ -62,7 +64,11 @@ class Overview:
 
 
 def overview(
-    arm: Arm, recordings: Sequence[Recording], progress: ProgressCallback | None = None, settings: Settings = SETTINGS
+    arm: Arm,
+    recordings: Sequence[Recording],
+    progress: ProgressCallback | None = None,
+    settings: Settings = SETTINGS,
+    inspection: Inspection | None = None,
 ) -> Overview:
     """Inspect recordings, and estimate what they can show of an arm.
 
@@ -71,16 +77,22 @@ def overview(
         recordings: of the machine.
         progress: called with the share done and a text.
         settings: numbers of the method.
+        inspection: of these recordings, if they were inspected before.
 
     Raises:
         InputError: for recordings that do not fit the arm.
     """
     signals, limits = Progress.to(progress).split(1, 19)
     signals.at(0.0, "signals")
-    inspection = inspect_recordings(arm, recordings, settings)
+    inspection = inspect_recordings(arm, recordings, settings) if inspection is None else inspection
     reduced, dataset = prepare(arm, recordings, settings)
     notes, _ = preflight(dataset)
     return Overview(arm, tuple(recordings), inspection, excitation_of(reduced, dataset, limits), tuple(notes))
+
+
+def overview_of_restart(arm: Arm, error: RestartError) -> Overview:
+    """Build the overview of a file whose clock starts again: its fault alone, since it cannot be read as one recording."""
+    return Overview(arm, (), Inspection((restart(error),), (), (), 0.0), Excitation((), (), ""))
 
 
 def stated_noise(arm: Arm, signal: str) -> float | None:

@@ -9,17 +9,18 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.rail_evidence import stands_at
-from flexarm_env.identify.inspect.report import fault, percent
-from flexarm_env.identify.inspect.series import Series
+from flexarm_env.identify.inspect.report import fault
+from flexarm_env.identify.inspect.series import Inspected, Series
+from flexarm_env.identify.percent import percent
 from flexarm_env.identify.settings import Inspecting
 from flexarm_env.recordings.columns import UNITS
-from flexarm_env.recordings.recording import Recording
 
 
-def rail(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
+def rail(inspected: Inspected, arm: Arm, numbers: Inspecting) -> list[Fault]:
     """Find signals that stand at their largest or smallest reading as no noisy and no moving signal does."""
+    recording = inspected.recording
     found = []
-    series = {signal: Series.of(recording, signal, numbers) for signal in recording.signals}
+    series = {signal: inspected.series(signal, numbers) for signal in recording.signals}
     for signal, one in series.items():
         ends = [end for end in (-1, 1) if stands_at(end, signal, series, numbers)]
         if not ends:

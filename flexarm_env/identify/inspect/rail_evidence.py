@@ -29,14 +29,19 @@ def stands_at(end: int, signal: str, series: dict[str, Series], numbers: Inspect
     if one.flicker > numbers.flickers:
         still = all(other.stands_still(standing, numbers) for other in others)
         near_zero = abs(values.max()) < numbers.near_zero * np.ptp(values)
-        return (repeated or _piles_up(values, one.step, count, numbers)) and not (still and (bool(others) or near_zero))
+        return (repeated or _piles_up(values, one, count, numbers)) and not (still and (bool(others) or near_zero))
     episodes = starts[at_end & (lengths >= numbers.least_run)]
     return repeated and _is_cut(values, episodes, one.step, numbers) and not _rests(one, values.max(), standing, others, numbers)
 
 
-def _piles_up(values: Floats, step: float, count: int, numbers: Inspecting) -> bool:
-    """Whether a flickering signal has more readings at its end than a step before it, where noise has fewer."""
-    before = int(np.sum(values > values.max() - (1 + 1 / 2) * step)) - count
+def _piles_up(values: Floats, series: Series, count: int, numbers: Inspecting) -> bool:
+    """Whether a flickering signal has more readings at its end than a step before it, where noise has fewer.
+
+    Noise wider than a step thins out towards its end, so that even half as many are too many.
+    """
+    before = int(np.sum(values > values.max() - (1 + 1 / 2) * series.step)) - count
+    if series.noise > numbers.wide_noise * series.step and count >= numbers.many_at_rail and 2 * count > before:
+        return True
     return (count - before) > numbers.piled_up * math.sqrt(count + before)
 
 

@@ -56,11 +56,6 @@ def shown(signal: str, value: float) -> str:
     return quantity(value, UNITS[signal])
 
 
-def percent(share: float) -> str:
-    """Format a share with two digits: "12 %"."""
-    return f"{100 * share:.2g} %" if share < 1 else "100 %"
-
-
 def stretches(recording: Recording, rows: Sequence[int] | np.ndarray) -> list[tuple[float, float]]:
     """Join samples in a row to stretches of time [s], each from its first sample to just before the next sound one."""
     rows = np.asarray(rows)

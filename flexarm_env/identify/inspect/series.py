@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.identify.settings import Inspecting
+from flexarm_env.recordings.noise import Noise, Readings, estimate_noise
 from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
@@ -28,24 +29,13 @@ class Series:
         rows: (n,) samples of the recording that they stand in.
         values: (n,) in the signal's unit.
         step: smallest change between two readings in a row; 0 where none changes.
-        noise: standard deviation that the second differences show, at least that of rounding to the step.
+        noise: standard deviation of a reading, of noise and rounding; at least that of rounding to the step.
     """
 
     rows: Integers
     values: Floats
     step: float
     noise: float
-
-    @classmethod
-    def of(cls, recording: Recording, signal: str, numbers: Inspecting) -> Series:
-        """Take the readings of a signal out of a recording."""
-        rows = np.flatnonzero(np.isfinite(recording.signals[signal]))
-        values = recording.signals[signal][rows]
-        changes = np.abs(np.diff(values))
-        real = changes[changes > numbers.rounding * np.ptp(values)] if len(values) > 1 else changes
-        step = float(real.min()) if real.size else 0.0
-        second = np.median(np.abs(np.diff(values, 2))) if len(values) > 2 else 0.0
-        return cls(rows, values, step, max(float(second) * numbers.from_second_differences, step * numbers.from_rounding))
 
     def __len__(self) -> int:
         return len(self.values)
@@ -61,8 +51,10 @@ class Series:
         return float(np.mean(self.changes[1:] * self.changes[:-1] < 0.0)) if len(self) > 2 else 0.0
 
     def runs(self) -> tuple[Integers, Integers]:
-        """Find stretches of equal readings; return the index of the first reading of each, and their lengths."""
-        starts = np.flatnonzero(np.r_[True, self.changes != 0.0]).astype(np.int64)
+        """Find stretches of equal readings without a gap; return the index of the first reading of each, and their lengths."""
+        steps = np.diff(self.rows)
+        gaps = steps > 2 * np.median(steps) if len(steps) else steps > 0
+        starts = np.flatnonzero(np.r_[True, (self.changes != 0.0) | gaps]).astype(np.int64)
         return starts, np.diff(np.r_[starts, len(self)]).astype(np.int64)
 
     def stands_still(self, rows: Integers, numbers: Inspecting) -> bool:
@@ -84,6 +76,35 @@ class Series:
         enough = sums[1] >= numbers.fewest_at_rail
         shares = sums[0][enough] / sums[1][enough]
         return float(np.clip(shares.max() if shares.size else 1.0, numbers.least_repeats, 1.0))
+
+
+@dataclass(frozen=True)
+class Inspected:
+    """A recording and the noise of its signals.
+
+    Attributes:
+        recording: as the checks before have mended it.
+        noise: by signal, of the readings as they were read; None where they show none.
+    """
+
+    recording: Recording
+    noise: Mapping[str, Noise | None]
+
+    @classmethod
+    def of(cls, recording: Recording) -> Inspected:
+        """Estimate the noise of every signal of a recording."""
+        pairs = ((signal, Readings(recording.time, values)) for signal, values in recording.signals.items())
+        return cls(recording, {signal: estimate_noise([readings]) for signal, readings in pairs})
+
+    def series(self, signal: str, numbers: Inspecting) -> Series:
+        """Take the readings of a signal out of the recording."""
+        rows = np.flatnonzero(np.isfinite(self.recording.signals[signal]))
+        values = self.recording.signals[signal][rows]
+        changes = np.abs(np.diff(values))
+        real = changes[changes > numbers.rounding * np.ptp(values)] if len(values) > 1 else changes
+        step = float(real.min()) if real.size else 0.0
+        found = self.noise[signal]
+        return Series(rows, values, step, max(found.total if found else 0.0, step * numbers.from_rounding))
 
 
 def partners(signal: str, series: Mapping[str, Series]) -> list[Series]:

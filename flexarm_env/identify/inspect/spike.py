@@ -7,17 +7,17 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.report import fault, ignore, row_list, shown
-from flexarm_env.identify.inspect.series import Series
+from flexarm_env.identify.inspect.series import Inspected
 from flexarm_env.identify.inspect.wild import split
 from flexarm_env.identify.settings import Inspecting
-from flexarm_env.recordings.recording import Recording
 
 
-def spike(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
+def spike(inspected: Inspected, arm: Arm, numbers: Inspecting) -> list[Fault]:
     """Find single readings that stand off those before and after them by far more than the signal ever changes."""
+    recording = inspected.recording
     found = []
     for signal in recording.signals:
-        series = Series.of(recording, signal, numbers)
+        series = inspected.series(signal, numbers)
         spikes, _ = split(series, numbers)
         if not len(spikes.first):
             continue

@@ -34,9 +34,12 @@ def _are_exchanged(evidence: Evidence, one: str, other: str) -> bool:
     crosswise = run.agreement(one, other), run.agreement(other, one)
     if all(found.is_within(numbers.near) and found.share > numbers.same_shape for found in crosswise):
         return True
+    if any(found.is_within(numbers.least_factor) and found.share > numbers.similar for found in own):
+        return False  # the other one has a factor
     if not all(found.is_within(numbers.plausible) and found.share > numbers.similar for found in crosswise):
         return False
-    return _apart(*crosswise) < numbers.least_factor and _apart(*own) > numbers.far_apart
+    far = _apart(*own) > numbers.far_apart or all(found.share < numbers.shared_motion for found in own)
+    return far and _apart(*crosswise) < numbers.least_factor
 
 
 def _apart(one: Agreement, other: Agreement) -> float:

@@ -40,26 +40,24 @@ def usual_change(series: Series, numbers: Inspecting) -> float:
     return float(np.quantile(np.abs(series.changes), numbers.usual)) if len(series) > 1 else 0.0
 
 
-def least_height(series: Series, numbers: Inspecting) -> float:
-    """Compute the height from which a reading cannot belong to the signal."""
-    return max(numbers.wild * usual_change(series, numbers), numbers.wild_noise * series.noise, numbers.wild_steps * series.step)
-
-
 def excursions(series: Series, numbers: Inspecting) -> Stretches:
     """Find equal readings in a row, one or several, that stand off the readings on both sides, and on the same side."""
     starts, lengths = series.runs()
     if len(starts) < 3:
         return Stretches(*(np.zeros(0, dtype=np.int64),) * 2, np.zeros(0))
-    values = series.values[starts]
+    values, first, length = series.values[starts], starts[1:-1], lengths[1:-1]
     into, out = values[1:-1] - values[:-2], values[1:-1] - values[2:]
-    height = np.where(into * out > 0.0, np.where(np.abs(into) < np.abs(out), into, out), 0.0)
-    level = 0.5 * (values[:-2] + values[2:])
-    wild = (np.abs(height) > least_height(series, numbers)) & (lengths[1:-1] <= numbers.longest_loss * len(series))
-    chosen = np.flatnonzero(wild) + 1
-    found = Stretches(starts[chosen], lengths[chosen], values[chosen] - level[chosen - 1])
-    others = np.delete(np.abs(series.changes), np.r_[found.first - 1, found.first + found.length - 1])
+    height = 0.5 * (into + out)
+    # In motion the readings on both sides differ, too.
+    stands_off = np.where(into * out > 0.0, np.minimum(np.abs(into), np.abs(out)), 0.0) > numbers.wild_side * np.abs(height)
+    chance = max(numbers.wild_noise * series.noise, numbers.wild_steps * series.step)
+    suspect = stands_off & (np.abs(height) > chance) & (length <= numbers.longest_loss * len(series))
     # A signal that is sampled too slowly for its motion changes as much elsewhere.
-    return found.where(np.abs(height[chosen - 1]) > numbers.wild_largest * float(others.max(initial=0.0)))
+    others = np.delete(np.abs(series.changes), np.r_[first[suspect] - 1, first[suspect] + length[suspect] - 1])
+    largest = float(others.max(initial=0.0))
+    least = max(numbers.wild * usual_change(series, numbers), numbers.wild_largest * largest)
+    wild = suspect & (np.abs(height) > least)
+    return Stretches(first[wild], length[wild], height[wild])
 
 
 def split(series: Series, numbers: Inspecting) -> tuple[Stretches, Stretches]:

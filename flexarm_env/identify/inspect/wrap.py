@@ -9,19 +9,19 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.report import fault, shown
-from flexarm_env.identify.inspect.series import Floats, Integers, Series
+from flexarm_env.identify.inspect.series import Floats, Inspected, Integers, Series
 from flexarm_env.identify.settings import Inspecting
 from flexarm_env.recordings.columns import UNITS
-from flexarm_env.recordings.recording import Recording
 
 _TURN = 2 * math.pi
 
 
-def wrap(recording: Recording, arm: Arm, numbers: Inspecting) -> list[Fault]:
+def wrap(inspected: Inspected, arm: Arm, numbers: Inspecting) -> list[Fault]:
     """Find signals that jump by their whole range, and by the same at each jump."""
+    recording = inspected.recording
     found = []
     for signal in recording.signals:
-        series = Series.of(recording, signal, numbers)
+        series = inspected.series(signal, numbers)
         steps, modulus = wraps(series, UNITS[signal] == "rad", numbers)
         if modulus:
             times = "once" if len(steps) == 1 else f"{len(steps)} times"
@@ -47,16 +47,26 @@ def wraps(series: Series, is_angle: bool, numbers: Inspecting) -> tuple[Integers
     jumps = np.abs(changes[steps] - _slopes(changes, steps))
     modulus = float(np.median(jumps))
     others = np.abs(np.delete(changes, steps))
-    usual = float(np.quantile(others, numbers.usual)) if others.size else 0.0
+    usual, fast = (float(np.quantile(others, q)) if others.size else 0.0 for q in (numbers.usual, numbers.seldom))
     slack = max(numbers.same_jump * modulus, 2 * usual)
-    if np.abs(jumps - modulus).max() > slack or extent > modulus + slack or others.max(initial=0.0) > numbers.smooth * modulus:
+    if (
+        not _are_alike(np.abs(jumps - modulus), slack, others, numbers)
+        or extent > modulus + slack
+        or fast > numbers.smooth * modulus
+    ):
         return none, 0.0
     modulus = max(modulus, extent)  # all readings lie within it
-    is_turn = is_angle and abs(modulus - _TURN) < slack
+    is_turn = is_angle and abs(modulus - _TURN) < max(numbers.same_turn * _TURN, 2 * usual)
     if is_turn and abs(modulus - _TURN) < numbers.same_jump * _TURN:
         modulus = _TURN
     is_wrap = is_turn or _goes_on(series, steps, numbers) or _flickers(series, steps, numbers)
     return (steps, modulus) if is_wrap else (none, 0.0)
+
+
+def _are_alike(off: Floats, slack: float, others: Floats, numbers: Inspecting) -> bool:
+    """Whether most jumps are off the middle one (jumps,) by no more than a slack, and the rest by the motion in one sample."""
+    most = float(np.quantile(off, numbers.most_alike, method="higher"))
+    return most <= slack and float(off.max()) <= slack + float(others.max(initial=0.0))
 
 
 def _slopes(changes: Floats, steps: Integers) -> Floats:

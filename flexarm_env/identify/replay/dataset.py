@@ -12,12 +12,14 @@ from numpy.typing import NDArray
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 from flexarm_env.experiments.payload import check_payload, plants_by_payload, stated_payload
-from flexarm_env.identify.replay.initial_state import Stretch, find_start
+from flexarm_env.identify.replay.initial_state import find_start
 from flexarm_env.identify.replay.loop import Loop, find_loop
+from flexarm_env.identify.replay.plausible import check_free_motion, check_steps
 from flexarm_env.identify.replay.reading_noise import SensorNoise, find_noise, is_open, with_found_noise
 from flexarm_env.identify.replay.readings import measured_time, share_of
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.replay.scales import scales_of
+from flexarm_env.identify.replay.start_fit import Stretch
 from flexarm_env.identify.replay.thinning import thin
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.parameters import INPUTS
@@ -82,18 +84,17 @@ class Dataset:
         """Build an arm's plants by the payload [kg] of the runs, which carry it."""
         return plants_by_payload(arm, (run.payload for run in self.runs), self.interval)
 
-    def set_initial_state(self, plant: Plant, run: Run, loop: Loop | None = None) -> None:
-        """Fit the initial state to the first samples of a run, and put a plant into it.
+    def stretch(self, run: Run, loop: Loop | None = None) -> Stretch:
+        """Cut out the first samples of a run, to which its initial state is fitted.
 
         Args:
-            plant: a compiled arm.
             run: the recording.
             loop: in which the samples are replayed; under the recorded command without.
         """
         count = run.start.samples
-        stretch = run.command[:count], run.intervals[:count], run.measured[:count]
+        samples = run.command[:count], run.intervals[:count], run.measured[:count]
         loop = None if loop is None else loop.first(count)
-        Stretch(run.start, *stretch, self.noise, self.settings.initial_states, loop).set_fitted_state(plant)
+        return Stretch(run.start, *samples, self.noise, self.settings.initial_states, loop)
 
     def nothing_held_out(self) -> Dataset:
         """Give the same runs with nothing held out."""
@@ -115,7 +116,7 @@ def prepare(
         The arm, with the noise of its sensors, and the recordings.
 
     Raises:
-        InputError: for recordings that do not fit the arm.
+        InputError: for recordings that do not fit the arm, or under whose commands and times it moves beyond any arm.
     """
     if not recordings:
         raise InputError("no recordings: name at least one CSV file or a folder of them")
@@ -125,6 +126,8 @@ def prepare(
     arm = replace(arm, sensors={s: arm.sensors[s] for s in signals})
     for recording in recordings:
         _check(arm, recording, settings.preparation.fewest_samples)
+        check_steps(recording, settings.preparation)
+        check_free_motion(arm, recording, settings.preparation)
     noises = find_noise(arm, recordings)
     if is_open(noises, settings.preparation):
         noises = find_noise(arm, recordings, _replayed(arm, _dataset(arm, recordings, noises, settings)))
@@ -157,8 +160,9 @@ def _replayed(arm: Arm, dataset: Dataset) -> list[Floats]:
     """Replay each run freely: readings (samples, signals)."""
     plants, found = dataset.plants(arm), []
     for run in dataset.runs:
-        dataset.set_initial_state(plants[run.payload], run)
-        found.append(plants[run.payload].replay(run.command, run.intervals))
+        plant, stretch = plants[run.payload], dataset.stretch(run)
+        stretch.place(plant, stretch.fit(plant))
+        found.append(plant.replay(run.command, run.intervals))
     return found
 
 
@@ -180,7 +184,7 @@ def _run(arm: Arm, recording: Recording, noise: Floats, interval: float, setting
     steps, shown = np.diff(time), measured_time(time, measured)
     # Wider than in a simulation, where only rounding counts as even: tables for one interval make replays fast.
     uneven = np.abs(steps - interval).max() > numbers.uneven * interval
-    start = find_start(time, measured, signals, noise, settings.initial_states)
+    start = find_start(time, recording.command, measured, signals, noise, settings.initial_states)
     loop, note = find_loop(arm, recording, signals, start.speed, numbers)
     return Run(
         name=recording.name,

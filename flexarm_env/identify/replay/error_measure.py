@@ -111,8 +111,10 @@ class WindowErrors:
         for run in dataset.runs_to_replay(held_out):
             rows = ~run.train if held_out else run.train
             plant, first = plants[run.payload], int(np.argmax(rows))
-            windows = window_replay(plant, run, dataset, observers[run.payload], first)
-            both = [run.errors(y, dataset.noise)[rows] for y in (windows, replay(plant, run, dataset))]
+            start = dataset.stretch(run).fit(plant)
+            windows = window_replay(plant, run, dataset, observers[run.payload], first, start)
+            free = replay(plant, run, dataset, start=start)
+            both = [run.errors(y, dataset.noise)[rows] for y in (windows, free)]
             totals += [_squares(errors) for errors in both]
             parts.append((both[0], dataset.noise))
         windows, free = np.sqrt(totals / dataset.readings(held_out))
@@ -147,27 +149,32 @@ class InnovationErrors:
 
     def score(self, arm: Arm, dataset: Dataset, held_out: bool) -> Score:
         """Measure the errors of an arm on the held-out or the fitted part."""
-        plants = dataset.plants(arm)
-        own = arm.constants["drive"]["torque_noise"]
-        gains = {payload: observer_gains(arm, plant, dataset, own) for payload, plant in plants.items()}
-        sigmas = {payload: innovation_sigma(plant, dataset, own) for payload, plant in plants.items()}
-        totals, parts = np.zeros(2), []
-        for run in dataset.runs:
+        plants, parts, free = dataset.plants(arm), [], 0.0
+        for run, (corrected, sigma) in zip(dataset.runs, self._innovations(arm, dataset), strict=True):
             rows = ~run.train if held_out else run.train
-            plant = plants[run.payload]
-            sigma = sigmas[run.payload]
-            if run.readings() < run.measured.size:
-                sigma = innovation_sigmas(plant, run, dataset, own, gains[run.payload])
-            corrected = run.errors(replay(plant, run, dataset, gains[run.payload]), sigma)
-            free = run.errors(replay(plant, run, dataset), dataset.noise)
-            totals += [_squares(errors[rows]) for errors in (corrected, free)]
-            parts.append((corrected[rows], sigmas[run.payload]))
-        innovations, free_run = np.sqrt(totals / dataset.readings(held_out))
-        return Score(float(innovations), float(free_run), _by_signal(parts, dataset, held_out))
+            parts.append((corrected[rows], sigma[rows]))
+            free += _squares(run.errors(replay(plants[run.payload], run, dataset), dataset.noise)[rows])
+        count = dataset.readings(held_out)
+        total = sum(_squares(errors) for errors, _ in parts)
+        return Score(float(np.sqrt(total / count)), float(np.sqrt(free / count)), _by_signal(parts, dataset, held_out))
 
     def brief(self, arm: Arm, dataset: Dataset) -> float:
         """Measure the held-out innovations."""
-        return self.score(arm, dataset, held_out=True).windows
+        pairs = zip(dataset.runs, self._innovations(arm, dataset), strict=True)
+        total = sum(_squares(errors[~run.train]) for run, (errors, _) in pairs)
+        return float(np.sqrt(total / dataset.readings(held_out=True)))
+
+    def _innovations(self, arm: Arm, dataset: Dataset) -> Iterator[tuple[Floats, Floats]]:
+        """Compute the innovations (samples, signals) of each run over their deviation, and that deviation."""
+        plants, own = dataset.plants(arm), arm.constants["drive"]["torque_noise"]
+        gains = {payload: observer_gains(arm, plant, dataset, own) for payload, plant in plants.items()}
+        stationary = {payload: innovation_sigma(plant, dataset, own) for payload, plant in plants.items()}
+        for run in dataset.runs:
+            plant, gain = plants[run.payload], gains[run.payload]
+            sigma = np.broadcast_to(stationary[run.payload], run.measured.shape)
+            if run.readings() < run.measured.size:
+                sigma = innovation_sigmas(plant, run, dataset, own, gain)
+            yield run.errors(replay(plant, run, dataset, gain), sigma), sigma
 
     def brief_readings(self, arm: Arm, dataset: Dataset) -> list[Floats]:
         """Compute the predictions (rows, signals) of each run's held-out part, over the deviation of the innovations."""
@@ -211,12 +218,11 @@ def _closed_loop_error(arm: Arm, dataset: Dataset) -> float:
 
 
 def _by_signal(parts: Sequence[tuple[Floats, Floats]], dataset: Dataset, held_out: bool) -> dict[str, SignalError]:
-    """Compute the rms of errors (rows, signals) over their deviation (signals,), of all runs, by signal."""
-    sums = [(np.sum(bounded(errors) ** 2, axis=0), sigma) for errors, sigma in parts]
+    """Compute the rms of errors (rows, signals) over their deviation, (signals,) or (rows, signals), of all runs, by signal."""
     counts = dataset.readings_by_signal(held_out)
     some = np.maximum(counts, 1)
-    over_noise = np.sqrt(np.sum([squares for squares, _ in sums], axis=0) / some)
-    rms = np.sqrt(np.sum([squares * sigma**2 for squares, sigma in sums], axis=0) / some)
+    over_noise = np.sqrt(np.sum([np.sum(bounded(errors) ** 2, axis=0) for errors, _ in parts], axis=0) / some)
+    rms = np.sqrt(np.sum([np.sum((bounded(errors) * sigma) ** 2, axis=0) for errors, sigma in parts], axis=0) / some)
     rows = zip(dataset.signals, counts, over_noise, rms, strict=True)
     return {signal: SignalError(float(error), float(size)) for signal, count, error, size in rows if count}
 

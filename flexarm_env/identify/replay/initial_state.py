@@ -1,4 +1,4 @@
-"""The initial state of a recording: estimated from its first samples without a model, and fitted to them with a plant."""
+"""The evidence of a recording's first samples on its initial state, without a model."""
 
 from __future__ import annotations
 
@@ -6,13 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh
 
-from flexarm_env.identify.replay.closed_loop import play_loop
-from flexarm_env.identify.replay.loop import Loop
-from flexarm_env.identify.replay.readings import bounded, count_of, errors_of, rms_of
+from flexarm_env.identify.replay.readings import errors_of, rms_of
 from flexarm_env.identify.settings import InitialStates
-from flexarm_env.plant.plant import NO_GAINS, NOT_MEASURED, Plant
 from flexarm_env.sensors import known_sensors
 
 Floats = NDArray[np.float64]
@@ -39,23 +35,27 @@ class Start:
     rest: float
 
 
-def find_start(time: Floats, measured: Floats, signals: list[str], noise: Floats, settings: InitialStates) -> Start:
+def find_start(
+    time: Floats, command: Floats, measured: Floats, signals: list[str], noise: Floats, settings: InitialStates
+) -> Start:
     """Read the evidence on the initial state from the first samples: at rest at zero wherever they allow it.
 
     Args:
         time: (samples,) [s], from 0.
+        command: (samples,) [A or V].
         measured: (samples, signals), SI units; NaN where nothing was measured.
         signals: names of the columns.
         noise: (signals,) standard deviations.
         settings: thresholds.
     """
+    undriven = int(np.flatnonzero(np.append(command, 1.0))[0]) + 1  # a sample is taken before its command acts
     begins = np.argmax(~np.isnan(measured), axis=0)
     early = time[begins] <= settings.held_time
     if early.all():
-        found = _start(time, measured, signals, noise, settings)
+        found = _start(time, undriven, measured, signals, noise, settings)
     else:
         known = [signal for signal, is_early in zip(signals, early, strict=True) if is_early]
-        found = _start(time, measured[:, early], known, noise[early], settings)
+        found = _start(time, undriven, measured[:, early], known, noise[early], settings)
     first = begins[[i for i, signal in enumerate(signals) if signal in ("arm_angle", "motor_speed")]].max(initial=0)
     if found.moving and first > 0:  # it may have left since the first sample
         found = replace(found, rest=_angle_at_rest(measured[:1], signals, noise, settings))
@@ -72,12 +72,16 @@ def _angle_at_rest(measured: Floats, signals: list[str], noise: Floats, settings
     return angle if "arm_angle" in signals and abs(angle) >= settings.at_zero * noise[column] else 0.0
 
 
-def _start(time: Floats, measured: Floats, signals: list[str], noise: Floats, settings: InitialStates) -> Start:
-    """Read the evidence on the initial state from signals that were measured at the start."""
+def _start(time: Floats, undriven: int, measured: Floats, signals: list[str], noise: Floats, settings: InitialStates) -> Start:
+    """Read the evidence on the initial state from signals that were measured at the start.
+
+    Of a held hub, the samples before the first command alone count where these are enough: the rest is no motion at the start.
+    """
     interval = time[1] - time[0]
     beam = np.array(["beam" in known_sensors()[s].needs for s in signals], dtype=bool)
     angle, speed, still = _hub(time, measured, signals, noise, settings)
     moving = speed != 0.0
+    still = min(still, undriven) if undriven * interval >= settings.held_time else still
     held = still * interval >= settings.held_time
     if held:
         vibrating = bool(np.any((_scatter(measured[:still]) > settings.vibrates * noise)[beam]))
@@ -149,113 +153,3 @@ def _speed_alone(measured: Floats, signals: list[str], noise: Floats, settings: 
     mean = float(first.mean())
     rests = abs(first[0]) < settings.at_rest * noise[tach] or abs(mean) < settings.significant * noise[tach]
     return 0.0 if rests else mean
-
-
-@dataclass(frozen=True)
-class Stretch:
-    """The first samples of a recording, to which the initial state of a plant is fitted.
-
-    Attributes:
-        start: evidence of the samples themselves.
-        command: (samples,) [A or V].
-        intervals: times between samples [s] if they are uneven, else empty.
-        measured: (samples, signals), SI units; NaN where nothing was measured.
-        noise: (signals,) standard deviations.
-        settings: thresholds.
-        loop: in which the stretch is replayed; under the commands without.
-    """
-
-    start: Start
-    command: Floats
-    intervals: Floats
-    measured: Floats
-    noise: Floats
-    settings: InitialStates
-    loop: Loop | None = None
-
-    @property
-    def command_before(self) -> float:
-        """The command before the first sample: none at rest, where states that lag behind commands begin at zero."""
-        return float(self.command[0]) if self.start.moving else 0.0
-
-    def set_fitted_state(self, plant: Plant) -> None:
-        """Fit the state to the stretch, and put a plant into it."""
-        start = self.start
-        state = np.zeros(plant.states)
-        hub, modes = _hub_directions(plant), _mode_directions(plant, self.settings.modes) if start.vibrating else []
-        state += np.array([start.angle, start.speed]) @ hub
-        basis = [*(hub if start.moving else []), *(modes[0] if modes else [])]
-        if basis:
-            fitted, sizes = self._fit(plant, state, np.array(basis), np.zeros(len(basis)))
-            if len(modes) > 1:
-                least = max(float(np.linalg.norm(sizes[-2:])), self.settings.least_size)
-                faster = np.concatenate(modes[1:])
-                weights = np.array([0.0] * len(basis) + [1.0 / (self.settings.faster_modes * least)] * len(faster))
-                fitted, _ = self._fit(plant, fitted, np.array([*basis, *faster]), weights)
-            state = self._likelier(plant, start.rest * hub[0], fitted)
-        plant.place(state, self.command_before)
-
-    def _residual(self, plant: Plant, state: Floats) -> Floats:
-        """Compute the error of every reading over its standard deviation (rows,); 0 where nothing was measured."""
-        plant.place(state, self.command_before)
-        if self.loop is None:
-            readings = plant.replay(self.command, self.intervals, NO_GAINS, NOT_MEASURED)
-        else:
-            readings = play_loop(plant, self.loop, self.intervals).readings
-        return bounded(-errors_of(self.measured, readings, self.noise)).ravel()
-
-    def _likelier(self, plant: Plant, rest: Floats, fitted: Floats) -> Floats:
-        """Choose rest unless the fitted state meets the stretch better by more than chance: gages may have offsets."""
-        left, best = (float(np.sum(self._residual(plant, state) ** 2)) for state in (rest, fitted))
-        significant = self.settings.significant**2 * max(1.0, best / count_of(self.measured))
-        return fitted if left - best > significant else rest
-
-    def _fit(self, plant: Plant, state: Floats, basis: Floats, weights: Floats) -> tuple[Floats, Floats]:
-        """Move the state along a basis (directions, states) to meet the stretch best; also give the moves (directions,).
-
-        Gauss–Newton with one over the expected size of each direction as its weight, where errors that are left count as noise.
-        """
-        best, moved = self._residual(plant, state), np.zeros(len(basis))
-        level = max(1.0, float(np.sqrt(np.sum(best**2) / count_of(self.measured))))
-        width = self.settings.difference
-        for _ in range(self.settings.iterations):
-            slopes = (
-                np.array([(self._residual(plant, state + width * direction) - best) / width for direction in basis]).T / level
-            )
-            rows = np.vstack([slopes, np.diag(weights)])
-            target = np.concatenate([-best / level, -weights * moved])
-            step = np.linalg.lstsq(rows, target, rcond=self.settings.least_seen)[0]
-            after = self._residual(plant, state + step @ basis)
-            if after @ after >= self.settings.gain * (best @ best):
-                break
-            state, best, moved = state + step @ basis, after, moved + step
-        return state, moved
-
-
-def _hub_directions(plant: Plant) -> Floats:
-    """Build the directions (2, states) of the hub's angle and its speed."""
-    size, bodies = len(plant.model.names), plant.bodies
-    rows = np.zeros((2, plant.states))
-    rows[0, :bodies] = rows[1, size : size + bodies] = 1.0
-    return _with_filters(plant, rows)
-
-
-def _mode_directions(plant: Plant, most: int) -> list[Floats]:
-    """Build the directions (2, states) of each of the beam's slowest clamped modes: deflected and moving, at unit energy."""
-    model, bodies = plant.model, plant.bodies
-    size = len(model.names)
-    count = min(most, size - bodies)
-    if count == 0:
-        return []
-    squares, shapes = eigh(model.stiffness[bodies:, bodies:], model.mass[bodies:, bodies:], subset_by_index=[0, count - 1])
-    modes = np.zeros((count, 2, plant.states))
-    modes[:, 0, bodies:size] = shapes.T / np.sqrt(squares)[:, None]
-    modes[:, 1, size + bodies : 2 * size] = shapes.T
-    return list(_with_filters(plant, modes))
-
-
-def _with_filters(plant: Plant, states: Floats) -> Floats:
-    """Settle the filters of accelerometers in states (…, states), as if the motion had gone on for long."""
-    size = 2 * len(plant.model.names)
-    states[..., size:] += states[..., :size] @ plant.model.settled.T
-    return states

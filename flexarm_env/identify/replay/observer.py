@@ -188,7 +188,9 @@ def _riccati(transition: Floats, output: Floats, process: Floats, noise: Floats,
         w = np.linalg.solve(eye + g @ h, np.hstack([a, g]))
         wa, wg = w[:, : len(a)], w[:, len(a) :]
         h_next = h + a.T @ h @ wa
+        h_next = 0.5 * (h_next + h_next.T)
+        if np.array_equal(h_next, h):
+            break
         g = g + a @ wg @ a.T
-        a = a @ wa
-        h = 0.5 * (h_next + h_next.T)
+        a, h = a @ wa, h_next
     return h

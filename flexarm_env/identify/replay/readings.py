@@ -25,6 +25,8 @@ def errors_of(measured: Floats, modelled: Floats, sigma: Floats | float = 1.0) -
 
 def bounded(errors: Floats) -> Floats:
     """Replace errors over the noise that are not finite, of a failed replay, by large ones."""
+    if np.isfinite(errors).all():
+        return errors
     return np.nan_to_num(errors, nan=FAILED_ERROR, posinf=FAILED_ERROR, neginf=-FAILED_ERROR)
 
 

@@ -14,12 +14,13 @@ from flexarm_env.identify.replay.loop import Loop
 from flexarm_env.identify.replay.observer import modal_gains, observer_gains
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.replay.scales import torque_scale
+from flexarm_env.identify.replay.start_fit import StartFit
 from flexarm_env.plant.plant import NO_GAINS, NOT_MEASURED, Plant
 
 Floats = NDArray[np.float64]
 
 
-def replay(plant: Plant, run: Run, dataset: Dataset, gains: Floats | None = None) -> Floats:
+def replay(plant: Plant, run: Run, dataset: Dataset, gains: Floats | None = None, start: StartFit | None = None) -> Floats:
     """Replay a run from its initial state.
 
     Args:
@@ -27,11 +28,13 @@ def replay(plant: Plant, run: Run, dataset: Dataset, gains: Floats | None = None
         run: the recording.
         dataset: to which the run belongs.
         gains: physical observer gains (modes, states, signals) for a corrected replay; None for a free one.
+        start: the initial state; fitted if left out.
 
     Returns:
         The readings (samples, signals), SI units.
     """
-    dataset.set_initial_state(plant, run)
+    stretch = dataset.stretch(run)
+    stretch.place(plant, stretch.fit(plant) if start is None else start)
     if gains is None:
         return plant.replay(run.command, run.intervals, NO_GAINS, NOT_MEASURED)
     return plant.replay(run.command, run.intervals, modal_gains(plant, gains), run.measured)
@@ -46,7 +49,8 @@ def loop_replay(plant: Plant, run: Run, loop: Loop, dataset: Dataset) -> LoopRep
         loop: its control law and reference.
         dataset: to which the run belongs.
     """
-    dataset.set_initial_state(plant, run, loop)
+    stretch = dataset.stretch(run, loop)
+    stretch.place(plant, stretch.fit(plant))
     return play_loop(plant, loop, run.intervals)
 
 
@@ -55,7 +59,9 @@ def whole_replay(plant: Plant, run: Run, dataset: Dataset) -> Floats:
     return replay(plant, run, dataset) if run.loop is None else loop_replay(plant, run, run.loop, dataset).readings
 
 
-def window_replay(plant: Plant, run: Run, dataset: Dataset, observers: Sequence[Floats], first: int = 0) -> Floats:
+def window_replay(
+    plant: Plant, run: Run, dataset: Dataset, observers: Sequence[Floats], first: int = 0, start: StartFit | None = None
+) -> Floats:
     """Replay a run freely in windows from estimated states.
 
     The states come from replays under several observers. Each window starts from the state that meets the window best: a
@@ -67,25 +73,29 @@ def window_replay(plant: Plant, run: Run, dataset: Dataset, observers: Sequence[
         dataset: to which the run belongs.
         observers: the kernel's gains of each replay.
         first: first sample of interest; windows before it are left empty.
+        start: the initial state; fitted if left out.
 
     Returns:
         The readings (samples, signals), SI units.
     """
     numbers = dataset.settings.preparation
     length = max(round(numbers.window / dataset.interval), numbers.least_window_samples)
-    starts = range(0, len(run.command), length)
-    best = np.full(len(starts), np.inf)
+    begins = range(0, len(run.command), length)
+    best = np.full(len(begins), np.inf)
     out = np.empty_like(run.measured)
-    command = plant.delayed(run.command)
+    stretch = dataset.stretch(run)
+    start = stretch.fit(plant) if start is None else start
+    stretch.place(plant, start)
+    began, command = plant.state.copy(), plant.delayed(run.command)
     for gains in observers:
-        dataset.set_initial_state(plant, run)
-        for w, start in enumerate(starts):
-            part = slice(start, start + length + 1)
+        plant.state[:] = began
+        for w, begin in enumerate(begins):
+            part = slice(begin, begin + length + 1)
             intervals = run.intervals[part] if len(run.intervals) else run.intervals
             state = plant.state.copy()
-            if start + length > first or not len(gains):
+            if begin + length > first or not len(gains):
                 free = plant.play(command[part], intervals, NO_GAINS, NOT_MEASURED)[:length]
-                inside = slice(start, start + len(free))
+                inside = slice(begin, begin + len(free))
                 error = float(np.sum(run.errors(free, dataset.noise, inside) ** 2))
                 if error < best[w] or not np.isfinite(best[w]):
                     out[inside], best[w] = free, error if np.isfinite(error) else np.inf

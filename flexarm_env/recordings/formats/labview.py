@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from flexarm_env.errors import InputError
 from flexarm_env.recordings.cells import count_cells, cut, is_blank
-from flexarm_env.recordings.columns import ColumnMap
+from flexarm_env.recordings.columns import ColumnMap, quantity_of
 from flexarm_env.recordings.formats.base import Format
 from flexarm_env.recordings.formats.text import read_rows, text_lines
 from flexarm_env.recordings.messages import quoted
@@ -53,7 +53,42 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
             raise InputError(f"row {other.place + 1}: has other columns than row {first.place + 1}; save each segment to a file")
     segments = (first, *others)
     rows = [row for segment in segments for row in segment.rows]
-    return read_rows(rows, [place for one in segments for place in one.places], first.header, first.place + 1, layout)
+    places = [place for one in segments for place in one.places]
+    layout = _with_one_clock(first.header, rows, places, layout)
+    return read_rows(rows, places, first.header, first.place + 1, layout)
+
+
+def _with_one_clock(header: Sequence[str], rows: Sequence[str], places: Sequence[int], layout: ColumnMap) -> ColumnMap:
+    """Find the times of a file with an `X_Value` left of each channel, which must be those of all channels that are read.
+
+    Raises:
+        InputError: at the first row in which two channels have different times.
+    """
+    clocks = _clocks(header, layout)
+    for row, place in zip(rows, places, strict=True) if len(clocks) > 1 else ():
+        cells = cut(row, layout.delimiter)
+        times = [cells[clock].strip() for clock in clocks if clock < len(cells)]
+        if len(set(times)) > 1:
+            raise InputError(
+                f"row {place + 1}: its channels have the times {' and '.join(map(quoted, times))}; "
+                "write each channel to a file of its own, and name it by 'file'"
+            )
+    time = layout.sources.get("time")
+    if not clocks or time is None or time.place != _TIME:
+        return layout
+    return replace(layout, sources=layout.sources | {"time": replace(time, place=clocks[0], key="index")})
+
+
+def _clocks(header: Sequence[str], layout: ColumnMap) -> list[int]:
+    """List the columns of times of the channels that a map names; none where all channels have one."""
+    every = [number for number, cell in enumerate(header) if cell == _TIME]
+    if len(every) < 2:
+        return []
+    places: dict[str | int | float, int] = {cell: number for number, cell in enumerate(header)}
+    places |= {number: number for number in range(len(header))}
+    named = [source.place for name, source in layout.sources.items() if quantity_of(name) != "time"]
+    channels = [places[place] for place in named if place in places]
+    return sorted({max(clock for clock in every if clock < channel) for channel in channels if channel > every[0]})
 
 
 def _layout(lines: Sequence[str], columns: ColumnMap) -> tuple[ColumnMap, bool]:

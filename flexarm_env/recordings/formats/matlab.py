@@ -54,6 +54,8 @@ def _column(name: str, source: Source, found: Mapping[str, Variable]) -> Floats:
         numbers = find_numbers(found, path)
     except InputError as error:
         raise InputError(f"column '{name}': {error}") from None
+    if numbers.ndim > 2 and 1 in numbers.shape:  # Simulink gives a signal of several columns as m × 1 × n
+        numbers = numbers.reshape([size for size in numbers.shape if size > 1] or [1])
     for axis, (kind, index) in enumerate((("row", source.row), ("index", source.cut))):
         if index is not None:
             numbers = _slice(numbers, axis, index, f"column '{name}': {kind} {index}, but {quoted(path)} is")

@@ -66,7 +66,13 @@ def _places(names: list[str], layout: ColumnMap) -> dict[str, tuple[Source, str,
             place = names[place]
         if place not in names:
             raise InputError(f"column '{name}': no {quoted(str(place))} in the header{absence(str(place), names)}")
-        found[name] = (source, str(place), int(match[2]) if match else None)
+        element = int(match[2]) if match else None
+        twin = next((other for other, (_, *own) in found.items() if own == [place, element]), None)
+        if twin:
+            raise InputError(f"columns '{twin}' and '{name}': both map to {quoted(str(source.place))}; correct one of them")
+        if names.count(str(place)) > 1:
+            raise InputError(f"column '{name}': the header has {quoted(str(place))} twice; save it with names that differ")
+        found[name] = (source, str(place), element)
     return found
 
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from flexarm_env import units
 from flexarm_env.errors import InputError
 from flexarm_env.recordings.cells import count_cells, cut, is_blank, is_number, read_numbers, usual_width
 from flexarm_env.recordings.columns import ColumnMap
 from flexarm_env.recordings.conditions import add_condition
 from flexarm_env.recordings.formats.base import Format
-from flexarm_env.recordings.headers import header_sources
+from flexarm_env.recordings.formats.timestamps import is_stamp, read_stamps
+from flexarm_env.recordings.headers import header_sources, states_units
 from flexarm_env.recordings.messages import quoted
 from flexarm_env.recordings.table import MOST_LINES, Table
 
@@ -33,7 +35,10 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
     layout, skip = _excel(lines, columns or ColumnMap())
     first, conditions = _preamble(lines, skip)
     header, body = _header(lines, first, layout)
+    body += bool(header) and body < len(lines) and states_units(lines[body], header, body, layout)
     rows = [row for row in range(body, len(lines)) if not is_blank(lines[row], layout.delimiter)]
+    while rows and lines[rows[-1]].lstrip().startswith("#"):
+        _add_remark(lines, rows.pop(), conditions)
     return replace(read_rows([lines[row] for row in rows], rows, header, body, layout), conditions=conditions)
 
 
@@ -59,8 +64,13 @@ def read_rows(rows: list[str], places: Sequence[int], header: list[str], body: i
     if any(source.key == "column" for source in layout.sources.values()):
         _check_header(header, body, labels, width, layout.delimiter)
     even = counts.count(width) == len(rows)
-    table = read_numbers(rows, places, labels, width, even, layout)
-    values = {name: table[:, i] for i, name in enumerate(labels.values())}
+    stamped = _column_of_stamps(rows[0], labels, layout)
+    numbers = {place: name for place, name in labels.items() if place != stamped}
+    table = read_numbers(rows, places, numbers, width, even, layout)
+    values = {name: table[:, i] for i, name in enumerate(numbers.values())}
+    if stamped is not None:
+        times = read_stamps(rows, places, stamped, layout.delimiter)
+        values["time"] = times / units.factor(sources["time"].unit, "s", sources["time"].scale)
     return Table(values, sources, lines=[row + 1 for row in places])
 
 
@@ -124,11 +134,16 @@ def _preamble(lines: Sequence[str], skip: int) -> tuple[int, dict[str, float]]:
         line = lines[row].strip()
         if not line.startswith("#") and not is_blank(lines[row]):
             return row, conditions
-        try:
-            add_condition(line, conditions)
-        except InputError as error:
-            raise InputError(f"row {row + 1}: {error}") from None
+        _add_remark(lines, row, conditions)
     raise InputError("has no header row; write one such as 'time [s],current [A],arm_angle [rad]'")
+
+
+def _add_remark(lines: Sequence[str], row: int, conditions: dict[str, float]) -> None:
+    """Add the condition that a remark states."""
+    try:
+        add_condition(lines[row].strip(), conditions)
+    except InputError as error:
+        raise InputError(f"row {row + 1}: {error}") from None
 
 
 def _header(lines: Sequence[str], first: int, layout: ColumnMap) -> tuple[list[str], int]:
@@ -154,6 +169,13 @@ def _header(lines: Sequence[str], first: int, layout: ColumnMap) -> tuple[list[s
                     f" points, or give a [columns] table with delimiter = {other!r}"
                 )
     return header, last + 1
+
+
+def _column_of_stamps(row: str, labels: Mapping[int, str], layout: ColumnMap) -> int | None:
+    """Find the column of time if it holds dates with times, which need no unit, and other columns hold numbers."""
+    place = next((place for place, name in labels.items() if name == "time"), None)
+    cells = cut(row, layout.delimiter) if place is not None and "-" in row and ":" in row else []
+    return place if place is not None and place < len(cells) and is_stamp(cells[place]) else None
 
 
 def _check_header(header: Sequence[str], row: int, labels: dict[int, str], width: int, delimiter: str) -> None:

@@ -32,7 +32,7 @@ def test_a_clipped_gage_stands_at_its_extreme(thesis, square):
     share = np.mean(np.abs(clipped) == 1.5)
     assert (fault.kind, fault.signal, fault.value, fault.unit) == ("rail", "strain_base", 1.5, "V")
     assert fault.share == pytest.approx(share)
-    assert f"{100 * share:.2g} % of the rows" in fault.message
+    assert f"{100 * share:.0f} % of the rows" in fault.message
     assert tomllib.loads(fault.hint) == {"strain_base": {"range": ["-1.5 V", "1.5 V"]}}
 
 
@@ -129,6 +129,27 @@ def test_spikes_are_named_by_their_largest(thesis, square):
     assert len(tomllib.loads(fault.hint)["strain_base"]["ignore"]) == 3
 
 
+def test_small_spikes_in_a_fast_motion_are_found_beside_smaller_ones():
+    """The angle of an axis at a steady speed changes as much from row to row as its spikes are a few times high."""
+    emps = Arm.load("emps")
+    run = simulate(emps, "square", duration=4.0, rate=400.0, seed=5)
+    angle = run.signals["arm_angle"].copy()
+    largest = float(np.abs(np.diff(angle)).max())
+    angle[[300, 700, 1200]] += largest * np.array([4.5, -4.3, 2.0])
+    fault = only(emps, changed(run, "arm_angle", angle))
+    assert (fault.kind, fault.value) == ("spike", pytest.approx(4.5 * largest, rel=0.02))
+    assert {300, 700} <= set(fault.rows)
+
+
+def test_what_a_rail_leaves_of_a_noisy_reading_is_not_lost(thesis, square):
+    """Between the readings at the rail, which are none, the others come one by one and repeat by chance."""
+    step = 0.002
+    coarse = np.round(square.signals["arm_angle"] / step) * step
+    level = float(np.quantile(coarse, 0.85))
+    found = inspect_recordings(thesis, [changed(square, "arm_angle", np.minimum(coarse, level))]).faults
+    assert [(one.kind, one.value) for one in found] == [("rail", pytest.approx(level))]
+
+
 def test_commands_beyond_the_limit_are_named(thesis, square):
     """The amplifier gives 5 A at most, and the file has the commands that it was given."""
     cut = thesis.with_effect("saturation", limit=5.0)
@@ -155,6 +176,18 @@ def test_two_runs_in_one_file(thesis, pulse, square, pause):
     assert (fault.kind, fault.signal, fault.rows) == ("glued", "", (len(pulse),))
     assert fault.value == pytest.approx(start)
     assert "cut it there" in fault.message
+
+
+def test_runs_that_end_a_turn_apart_are_two_and_no_wrap():
+    arm = Arm.load("cu-rigid")
+    time = np.arange(0.0, 2.0, 0.004)
+    noise = np.random.default_rng(1).normal(0.0, 5e-4, 2 * len(time))
+    angle = 0.5 * 6.2 * (1.0 - np.cos(np.pi * np.minimum(time, 1.0)))
+    both = np.r_[angle, 0.3 * angle] + noise
+    command = np.tile(np.sin(np.pi * time), 2)
+    run = Recording.from_arrays("both", np.arange(len(both)) * 0.004, "voltage", command, {"arm_angle": both})
+    fault = next(one for one in inspect_recordings(arm, [run]).faults)
+    assert (fault.kind, fault.rows) == ("glued", (len(time),))
 
 
 def test_an_angle_whose_encoder_slips_is_not_two_runs(thesis, square):

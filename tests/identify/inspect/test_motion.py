@@ -260,3 +260,43 @@ def test_the_noise_of_all_signals_counts_from_whichever_the_start_is_read():
     part = with_signal(sound().part(0.3), "motor_speed", lambda speed: speed / 5.0)
     run = gather(Arm.load("thesis"), part, SETTINGS).run
     assert np.isfinite(run.noise).all()
+
+
+def machine_of(arm: str, **factors: float) -> list[Recording]:
+    """Three recordings of a machine whose constants are multiples of those of an arm."""
+    model = Arm.load(arm)
+    changed = model.with_values({path: factor * model.value(path) for path, factor in factors.items()})
+    return [simulate(changed, name, duration=6.0, rate=250.0, seed=2, name=name) for name in ("square", "pulse", "sweep")]
+
+
+#: Constants of a machine a few percent off those of its arm file.
+OFF = {"drive.torque_constant": 1.06, "hub.inertia": 0.95}
+BEAM_OFF = {"beam.mass_per_length": 1.05, "beam.bending_stiffness": 0.94}
+
+
+@pytest.mark.parametrize(("arm", "lag"), [("thesis-fem", 0.4), ("cu-rigid", 0.068), ("cu-flexible", 0.12)])
+def test_a_lag_of_all_signals_is_exact_though_the_constants_are_not(arm, lag):
+    runs = machine_of(arm, **OFF)
+    assert motion_faults(Arm.load(arm), runs) == []
+    found = motion_faults(Arm.load(arm), [late(run, lag, tuple(run.signals)) for run in runs])
+    assert [(one.kind, one.signal) for one in found] == [("clock", "")] * 3
+    assert all(one.value == pytest.approx(lag, rel=CLOSE) for one in found)
+
+
+@pytest.mark.parametrize(
+    ("arm", "signal", "factor"),
+    [("cu-flexible", "tip_deflection", 1.9), ("thesis", "strain_mid", 0.55), ("thesis", "strain_mid", 6.3)],
+)
+def test_a_factor_of_a_beam_s_signal_is_exact_though_the_constants_are_not(arm, signal, factor):
+    runs = machine_of(arm, **OFF, **BEAM_OFF)
+    assert motion_faults(Arm.load(arm), runs) == []
+    found = motion_faults(Arm.load(arm), [with_signal(run, signal, lambda values: factor * values) for run in runs])
+    assert [(one.kind, one.signal) for one in found] == [("factor", signal)] * 3
+    assert all(one.value == pytest.approx(factor, rel=CLOSE) for one in found)
+
+
+def test_a_gage_exchanged_with_the_tachometer_is_found_beside_wrong_constants():
+    (run, *_) = machine_of("thesis", **OFF)
+    exchanged = run.signals | {"motor_speed": run.signals["strain_base"], "strain_base": run.signals["motor_speed"]}
+    fault = found_in("thesis", replace(run, signals=exchanged))
+    assert (fault.kind, {fault.signal, fault.other}) == ("swapped", {"motor_speed", "strain_base"})

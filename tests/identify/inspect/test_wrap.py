@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from flexarm_env import Arm, Recording, inspect_recordings
 from flexarm_env.identify.inspect.inspection import reading_faults
+from flexarm_env.identify.inspect.series import Inspected
 
 CU = Arm.load("cu-rigid")
 TIME = np.arange(0.0, 4.0, 0.004)
@@ -41,7 +42,7 @@ def test_a_wrap_of_any_modulus_is_found_and_undone(amplitude, share, start, rate
     angle = sound.signals["arm_angle"]
     modulus = share * float(np.ptp(angle))
     assume(np.abs(np.diff(angle)).max() < 0.2 * modulus)
-    (fault,), mended = reading_faults(CU, wrapped(sound, modulus, float(angle.min()) + start * modulus))
+    (fault,), mended = reading_faults(CU, Inspected.of(wrapped(sound, modulus, float(angle.min()) + start * modulus)))
     assert (fault.kind, fault.signal) == ("wrap", "arm_angle")
     assert fault.value == pytest.approx(modulus, rel=0.02)
     off = mended.signals["arm_angle"] - angle

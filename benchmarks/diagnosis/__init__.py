@@ -1,0 +1,1 @@
+"""Time of a diagnosis by stage, and its residuals and replays, for fixed cases."""

@@ -1,0 +1,55 @@
+"""Dates with times in the cells of a text table, as ISO 8601 writes them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.errors import InputError
+from flexarm_env.recordings.cells import cut
+from flexarm_env.recordings.messages import quoted
+
+# Possessive, so that no cell takes time that grows faster than its length.
+_STAMP = re.compile(r"(\d{4}-\d\d-\d\d)[T ](\d\d:\d\d(?::\d\d(?:[.,]\d{1,9}+)?+)?+)[ ]?+(Z|[+-]\d\d:?\d\d)?+")
+
+
+def is_stamp(cell: str) -> bool:
+    """Whether a cell is a date with a time.
+
+    Example:
+        >>> is_stamp("2024-05-01 10:00:00.25"), is_stamp("0.25")
+        (True, False)
+    """
+    return _STAMP.fullmatch(cell.strip()) is not None
+
+
+def read_stamps(rows: Sequence[str], lines: Sequence[int], place: int, delimiter: str) -> NDArray[np.float64]:
+    """Read the times (n,) [s] of a column of dates with times, from the first of them.
+
+    Args:
+        rows: the text of each sample.
+        lines: the index of each in the file.
+        place: 0-based number of the column.
+        delimiter: between cells.
+
+    Raises:
+        InputError: for a cell that is no such time, or has another time zone than the first.
+    """
+    found, zones = [], set()
+    for row, line in zip(rows, lines, strict=True):
+        cell = cut(row, delimiter)[place].strip()
+        match = _STAMP.fullmatch(cell)
+        zones |= {match[3] if match else None}
+        try:
+            if match is None or len(zones) > 1:
+                raise ValueError
+            found.append(np.datetime64(f"{match[1]}T{match[2].replace(',', '.')}", "ns"))
+        except ValueError:
+            raise InputError(
+                f"row {line + 1}, column 'time': {quoted(cell)} is no date with a time as in the first row; correct it"
+            ) from None
+    since = np.array(found) - found[0]
+    return np.asarray(since / np.timedelta64(1, "s"), dtype=np.float64)

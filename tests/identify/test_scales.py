@@ -1,0 +1,45 @@
+"""A typical size does the same to machines of any size: its torque is the same share of the drive's."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flexarm_env import Arm, Recording
+from flexarm_env.identify.replay.dataset import prepare
+
+TIME = np.arange(0.0, 4.0, 0.01)
+
+
+def sizes(length: float, current: float, angle: float) -> dict[str, float]:
+    """Sizes of an arm of a length [m] that is driven by currents [A] through angles [rad]."""
+    arm = Arm.load("thesis-fem").with_values({"beam.length": length})
+    signals = {"arm_angle": angle * np.sin(2.0 * TIME), "motor_speed": 2.0 * angle * np.cos(2.0 * TIME)}
+    run = Recording.from_arrays("run", TIME, "current", current * np.sign(np.sin(2.0 * TIME)), signals)
+    return dict(prepare(arm, [run])[1].scales)
+
+
+def shares(scales: dict[str, float], length: float) -> dict[str, float]:
+    """Torque [Nm] of each kind of effect of typical size, at the speed and angle of the data, over the drive's."""
+    speed, angle, torque = scales["rad/s"], 1.0 / scales["1/rad"], scales["N*m"]
+    return {
+        "viscous": scales["N*m*s"] * speed / torque,
+        "spring": scales["N*m/rad"] * angle / torque,
+        # the drag on a length dx at a distance x is c (x ω)² dx, so its torque is c ω² L⁴ / 4
+        "drag": scales["N*s**2/m**3"] * speed**2 * length**4 / torque,
+        # a body of m at the tip has the inertia m L²
+        "payload": scales["kg"] * length**2 / scales["kg*m**2"],
+    }
+
+
+@pytest.mark.parametrize(("length", "current", "angle"), [(2.0, 1.0, 1.0), (1.0, 3.0, 1.0), (1.0, 1.0, 0.4), (1.3, 0.5, 1.7)])
+def test_a_typical_effect_is_the_same_share_of_the_drive_at_any_size(length, current, angle):
+    expected = shares(sizes(1.0, 1.0, 1.0), 1.0)
+    assert shares(sizes(length, current, angle), length) == pytest.approx(expected, rel=1e-9)
+
+
+def test_sizes_follow_the_machine():
+    one, longer, stronger, wider = sizes(1.0, 1.0, 1.0), sizes(2.0, 1.0, 1.0), sizes(1.0, 3.0, 1.0), sizes(1.0, 1.0, 0.5)
+    assert longer["kg*m**2"] > 4.0 * one["kg*m**2"]
+    assert stronger["N*m"] == pytest.approx(3.0 * one["N*m"])
+    assert wider["rad/s"] == pytest.approx(0.5 * one["rad/s"])
