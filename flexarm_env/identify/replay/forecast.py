@@ -17,6 +17,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.observer import forecast_gains, modal_gains, process_of_moving, steady_covariance
 from flexarm_env.identify.replay.run import Run
+from flexarm_env.identify.replay.start_bank import StartBank
 from flexarm_env.identify.settings import FAILED_ERROR
 from flexarm_env.plant.plant import NO_GAINS, NOT_MEASURED, Plant
 
@@ -54,11 +55,13 @@ class Observer:
         dataset: the recordings.
         disturbances: for which it is designed.
         designed: physical gains (modes, states, signals), which arms of other values share, by payload [kg] and structure.
+        starts: initial states of the recordings.
     """
 
     dataset: Dataset
     disturbances: Disturbances
     designed: dict[tuple[float, int, int], Floats] = field(default_factory=dict, repr=False, compare=False)
+    starts: StartBank = field(default_factory=StartBank, repr=False, compare=False)
 
     def gains(self, plant: Plant, payload: float) -> Floats:
         """Look up the kernel's gains for a plant; design those of its structure for it where there are none yet."""
@@ -67,6 +70,11 @@ class Observer:
             noise = self.dataset.noise * np.sqrt(self.disturbances.white)
             self.designed[key] = forecast_gains(plant, self.dataset, self.disturbances.torque, noise)
         return modal_gains(plant, self.designed[key])
+
+    def place(self, plant: Plant, run: Run) -> None:
+        """Put a plant into the initial state of a run."""
+        place = [one.name for one in self.dataset.runs].index(run.name)
+        self.dataset.stretch(run).place(plant, self.starts.start(plant, run, place, self.dataset))
 
 
 def window_samples(dataset: Dataset) -> int:
@@ -99,7 +107,7 @@ def _forecast(plant: Plant, run: Run, dataset: Dataset, observer: Observer) -> F
     """Compute the errors over the noise (samples, signals) of one run."""
     length, readings = window_samples(dataset), np.empty_like(run.measured)
     gains = observer.gains(plant, run.payload)
-    dataset.set_initial_state(plant, run)
+    observer.place(plant, run)
     command = plant.delayed(run.command)
     for start in range(0, len(command), length):
         state = plant.state.copy()
@@ -172,7 +180,7 @@ def filtered_states(arm: Arm, dataset: Dataset, observer: Observer, most: int) -
     for run in dataset.fitted:
         plant, kept = plants[run.payload], []
         gains = observer.gains(plant, run.payload)
-        dataset.set_initial_state(plant, run)
+        observer.place(plant, run)
         command = plant.delayed(run.command)
         for start in range(0, len(command), length):
             if start // length % stride == 0:

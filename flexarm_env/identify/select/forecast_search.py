@@ -68,8 +68,10 @@ class Hypothesis:
         return any(self.arm.value(p.path) in (p.low, p.high) for p in paths)
 
     def betters(self, other: Hypothesis, numbers: ForecastSearching) -> bool:
-        """Whether its density is higher than another's by some standard errors over blocks."""
+        """Whether its density is higher than another's by some standard errors over blocks, of which none counts for many."""
         gains = other.costs - self.costs
+        most = numbers.largest_block * float(np.median(np.abs(gains)))
+        gains = np.clip(gains, -most, most)
         return float(gains.sum()) > max(numbers.standard_errors * _error(gains), numbers.same_density)
 
     def equals(self, other: Hypothesis, base: Hypothesis, numbers: ForecastSearching) -> bool:
@@ -120,9 +122,9 @@ class ForecastSearch:
                 trace = trace.then("screen", tried=tried) if not trace.ranking else trace
                 if not fresh:
                     break
-                level = self._finish(sorted(fresh.values(), key=lambda one: one.cost)[: self.numbers.width])
+                level = self._finish(sorted(fresh.values(), key=_fitted_cost)[: self.numbers.width])
                 known |= fresh | {frozenset(one.effects): one for one in level}
-                if not level[0].betters(best, self.numbers) or self._explains(level[0]):
+                if not any(one.betters(best, self.numbers) for one in level) or self._explains(level[0]):
                     break
             last.at(0.0, "calibrating the model that is chosen")
             return self._accept(trace, self._chosen(known), known)
@@ -174,9 +176,9 @@ class ForecastSearch:
         """Calibrate the best to the end, and others that are near it; best first."""
         done: list[Hypothesis] = []
         for one in level:
-            if not done or one.cost < self.numbers.near_cost * done[0].cost:
+            if not done or _fitted_cost(one) < self.numbers.near_cost * _fitted_cost(done[0]):
                 one = self._calibrate(one.effects, one.arm, one.prediction.disturbances)
-            done = sorted([*done, one], key=lambda other: other.cost)
+            done = sorted([*done, one], key=_fitted_cost)
         return done
 
     def _explains(self, one: Hypothesis) -> bool:
@@ -230,6 +232,11 @@ class ForecastSearch:
         others = [one for one in known.values() if len(one.effects) == len(chosen.effects) and beside < set(one.effects)]
         alike = [one for one in others if effect not in one.effects and one.equals(chosen, base, self.numbers)]
         return {next(iter(set(one.effects) - beside)): one for one in sorted(alike, key=lambda one: one.cost)}
+
+
+def _fitted_cost(one: Hypothesis) -> float:
+    """Look up the cost of the fitted part, by which a level is chosen: a model that lacks an effect may fail later."""
+    return one.prediction.cost
 
 
 def _beside(one: Hypothesis) -> str:
