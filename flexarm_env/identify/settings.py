@@ -29,6 +29,8 @@ LEAST_EXCESS = LEAST_COMMAND = 1e-9
 LARGEST_LOG = 20.0
 #: Smallest frequency [Hz] that divides: of an arm that does not vibrate.
 LEAST_FREQUENCY = 1e-9
+#: Weight of a group of lead times without readings.
+LEAST_COUNT = 1e-9
 #: Smallest norm that divides.
 LEAST_NORM = 1e-300
 
@@ -394,7 +396,7 @@ class Forecasts:
     torque_step: float = tuned(2.0, "Factor between levels of process noise that are tried.", "3 ends 12 % above the least cost")
     torques_tried: int = tuned(12, "Levels to either side that are tried without a replay.")
     readings_tried: int = tuned(120, "Variances of a sensor's noise that are tried without a replay, evenly in the logarithm.")
-    block: float = tuned(1.0, "Length of the blocks over which densities of models are compared.", unit="s")
+    block: float = tuned(0.5, "Length of the blocks over which densities of models are compared.", unit="s")
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,7 @@ from flexarm_env.identify.replay.forecast import (
     spread_of,
 )
 from flexarm_env.identify.replay.scales import torque_scale
+from flexarm_env.identify.settings import LEAST_COUNT
 
 Floats = NDArray[np.float64]
 
@@ -90,10 +91,6 @@ class Prediction:
         return np.add.reduceat(costs, starts)
 
 
-#: Weight of a group of lead times without readings.
-LEAST_COUNT = 1e-9
-
-
 def predict(arm: Arm, dataset: Dataset, disturbances: Disturbances) -> Prediction:
     """Forecast the fitted part under given disturbances."""
     plants, leads = dataset.plants(arm), lead_times(dataset, dataset.fitted)
@@ -144,7 +141,7 @@ def _observer(arm: Arm, dataset: Dataset, disturbances: Disturbances) -> Observe
     """Design the filter for an arm."""
     observer = Observer(dataset, disturbances)
     for payload, plant in dataset.plants(arm).items():
-        observer.gains(plant, payload)
+        observer.gains(arm, plant, payload)
     return observer
 
 

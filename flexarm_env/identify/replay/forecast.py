@@ -54,18 +54,19 @@ class Observer:
     Attributes:
         dataset: the recordings.
         disturbances: for which it is designed.
-        designed: physical gains (modes, states, signals), which arms of other values share, by payload [kg] and structure.
+        designed: physical gains (modes, states, signals), which arms of other values share, by payload [kg], effects and
+            size of the state.
         starts: initial states of the recordings.
     """
 
     dataset: Dataset
     disturbances: Disturbances
-    designed: dict[tuple[float, int, int], Floats] = field(default_factory=dict, repr=False, compare=False)
+    designed: dict[tuple[float, tuple[str, ...], int, int], Floats] = field(default_factory=dict, repr=False, compare=False)
     starts: StartBank = field(default_factory=StartBank, repr=False, compare=False)
 
-    def gains(self, plant: Plant, payload: float) -> Floats:
-        """Look up the kernel's gains for a plant; design those of its structure for it where there are none yet."""
-        key = (payload, plant.modes, plant.states)
+    def gains(self, arm: Arm, plant: Plant, payload: float) -> Floats:
+        """Look up the kernel's gains for an arm's plant; design those of its structure for it where there are none yet."""
+        key = (payload, tuple(arm.effects), plant.modes, plant.states)
         if key not in self.designed:
             noise = self.dataset.noise * np.sqrt(self.disturbances.white)
             self.designed[key] = forecast_gains(plant, self.dataset, self.disturbances.torque, noise)
@@ -95,7 +96,7 @@ def forecast_errors(arm: Arm, dataset: Dataset, runs: Sequence[Run], observer: O
         Errors over the noise (rows, signals), run after run; 0 where nothing was measured.
     """
     plants = dataset.plants(arm)
-    parts = [_forecast(plants[run.payload], run, dataset, observer) for run in runs]
+    parts = [_forecast(arm, plants[run.payload], run, observer) for run in runs]
     return _finite(np.concatenate(parts))
 
 
@@ -103,10 +104,10 @@ def _finite(errors: Floats) -> Floats:
     return np.clip(np.nan_to_num(errors, nan=FAILED_ERROR), -FAILED_ERROR, FAILED_ERROR)
 
 
-def _forecast(plant: Plant, run: Run, dataset: Dataset, observer: Observer) -> Floats:
+def _forecast(arm: Arm, plant: Plant, run: Run, observer: Observer) -> Floats:
     """Compute the errors over the noise (samples, signals) of one run."""
-    length, readings = window_samples(dataset), np.empty_like(run.measured)
-    gains = observer.gains(plant, run.payload)
+    length, readings = window_samples(observer.dataset), np.empty_like(run.measured)
+    gains = observer.gains(arm, plant, run.payload)
     observer.place(plant, run)
     command = plant.delayed(run.command)
     for start in range(0, len(command), length):
@@ -114,14 +115,27 @@ def _forecast(plant: Plant, run: Run, dataset: Dataset, observer: Observer) -> F
         readings[start : start + length] = _play(plant, run, command, start, length)
         plant.state[:] = state
         _play(plant, run, command, start, length, gains)
-    return run.errors(readings, dataset.noise)
+    return _errors(run, readings, observer.dataset)
+
+
+def _errors(run: Run, readings: Floats, dataset: Dataset, rows: slice = slice(None)) -> Floats:
+    """Compute errors over the noise (samples, signals), infinite where a replay that failed leaves any range."""
+    with np.errstate(over="ignore"):
+        return run.errors(readings, dataset.noise, rows)
 
 
 def _play(plant: Plant, run: Run, command: Floats, start: int, length: int, gains: Floats = NO_GAINS) -> Floats:
-    """Play one window from the plant's state, up to the first sample of the next: readings (samples, signals)."""
+    """Play one window from the plant's state, up to the first sample of the next: readings (samples, signals).
+
+    The first reading of the next window corrects no state yet, since it is to be forecast.
+    """
     part = slice(start, start + length + 1)
     intervals = run.intervals[part] if len(run.intervals) else run.intervals
-    return plant.play(command[part], intervals, gains, run.measured[part] if len(gains) else NOT_MEASURED)[:length]
+    measured = NOT_MEASURED
+    if len(gains):
+        measured = run.measured[part].copy()
+        measured[length:] = np.nan
+    return plant.play(command[part], intervals, gains, measured)[:length]
 
 
 @dataclass(frozen=True)
@@ -152,14 +166,14 @@ class FilteredStates:
         for run, starts, states in zip(self.dataset.fitted, self.starts, self.states, strict=True):
             plant = plants[run.payload]
             if not same_modes(plant, self.plants[run.payload]):
-                errors = _forecast(plant, run, self.dataset, self.observer)
+                errors = _forecast(arm, plant, run, self.observer)
                 parts += [errors[start : start + length] for start in starts]
                 continue
             command = plant.delayed(run.command)
             for start, state in zip(starts, states, strict=True):
                 plant.state[:] = state
                 rows = slice(start, start + length)
-                parts.append(run.errors(_play(plant, run, command, start, length), self.dataset.noise, rows))
+                parts.append(_errors(run, _play(plant, run, command, start, length), self.dataset, rows))
         return _finite(np.concatenate(parts))
 
     @property
@@ -179,7 +193,7 @@ def filtered_states(arm: Arm, dataset: Dataset, observer: Observer, most: int) -
     all_starts, all_states = [], []
     for run in dataset.fitted:
         plant, kept = plants[run.payload], []
-        gains = observer.gains(plant, run.payload)
+        gains = observer.gains(arm, plant, run.payload)
         observer.place(plant, run)
         command = plant.delayed(run.command)
         for start in range(0, len(command), length):

@@ -53,8 +53,9 @@ class Hypothesis:
 
     @functools.cached_property
     def costs(self) -> Floats:
-        """Negative log density (blocks,) of whole recordings, the held-out part included."""
-        return self.prediction.block_costs()
+        """Negative log density (blocks,) of whole recordings, under the disturbances that make those likeliest."""
+        now = self.prediction
+        return likeliest(now.arm, now.dataset.nothing_held_out(), now.disturbances).block_costs()
 
     @property
     def cost(self) -> float:
@@ -159,12 +160,16 @@ class ForecastSearch:
         return fresh, first
 
     def _finalists(self, one: Hypothesis, found: Sequence[Promise]) -> list[Promise]:
-        """Choose the effects to calibrate: those that promise most, and others that promise nearly as much."""
+        """Choose the effects to calibrate: those that promise most, others that promise nearly as much, and the companion.
+
+        The catalogue's companion, a constant torque, hides the share of another effect, which does not promise it then.
+        """
         numbers = self.numbers
         near = [p for p in found[numbers.finalists :] if p.gain >= numbers.near_promise * found[0].gain]
         rivals = set(rivals_of(found[0].effect, one.arm)) if found else set()
         near = sorted(near, key=lambda p: p.effect not in rivals)
-        return [*found[: numbers.finalists], *near][: numbers.most_finalists]
+        chosen = [*found[: numbers.finalists], *near][: numbers.most_finalists]
+        return chosen + [p for p in found if one.effects and p.effect == one.arm.known.pairing and p not in chosen]
 
     def _with(self, one: Hypothesis, promise: Promise) -> Hypothesis:
         start = replace(one.prediction.disturbances, torque=promise.torque)

@@ -51,7 +51,6 @@ class Background:
     Attributes:
         prediction: of the arm.
         states: from which the arm and others are forecast.
-        leads: of the forecasts' rows.
         errors: (rows, signals) over the noise.
         sigma: (rows, signals) deviation of the errors, at least that which they have.
         orthonormal: (readings, values) basis of the changes that the values can make under their priors.
@@ -60,11 +59,15 @@ class Background:
 
     prediction: Prediction
     states: FilteredStates
-    leads: Leads
     errors: Floats
     sigma: Floats
     orthonormal: Floats
     growth: Floats
+
+    @functools.cached_property
+    def leads(self) -> Leads:
+        """Lead times of the forecasts' rows."""
+        return self.prediction.leads.of(self.states.rows)
 
     @functools.cached_property
     def left(self) -> Floats:
@@ -117,7 +120,7 @@ def _background(parameters: FitParameters, prediction: Prediction) -> Background
     orthonormal = np.linalg.qr(stacked)[0][: errors.size]
     levels = [replace(prediction.disturbances, torque=torque) for torque in torque_levels(prediction)[:: numbers.every]]
     growth = np.array([prediction.spread.growth(level) for level in levels])
-    return Background(prediction, states, leads, errors, sigma, orthonormal, growth)
+    return Background(prediction, states, errors, sigma, orthonormal, growth)
 
 
 def _promise(backgrounds: Sequence[Background], base: float, effect: str, start: dict[str, float]) -> Promise:
