@@ -404,7 +404,7 @@ class ForecastFit:
     """Gauss–Newton steps on forecasts."""
 
     iterations: int = tuned(20, "Most steps.")
-    brief_iterations: int = tuned(6, "Most steps of a candidate.", "tells the right effect in ten of ten practice cases")
+    brief_iterations: int = tuned(6, "Most steps of a candidate.", "no sweep recorded")
     settled: float = tuned(1e-4, "Gain per sample, in log density, that a step makes unless it is idle.")
     settled_share: float = tuned(0.02, "And share of what is left, since a model that lacks an effect need not be exact.")
     cooling: float = tuned(
@@ -423,7 +423,7 @@ class Promising:
     )
     least_change: float = tuned(1e-6, "A change of the errors below this share is none.")
     largest_factor: float = tuned(10.0, "Largest factor by which an effect's size is changed at once.")
-    windows: int = tuned(40, "Windows in which effects are weighed, spread over all recordings.", "10 s; all of them rank alike")
+    windows: int = tuned(40, "Windows in which effects are weighed, spread over all recordings.", "10 s; the six best of a practice case rank as in all of them")
     every: int = tuned(2, "Of the levels of process noise that suit the errors, every so many are considered.")
 
 

@@ -1,7 +1,7 @@
 """Calibration by forecasts: Gauss–Newton steps of the values, and between them the disturbances that the errors then call for.
 
 Disturbances fall as the model improves. So the cost is smooth while the model is far off, and sharp once it is right, without a
-schedule. Where a step gains nothing more, one more is taken under larger disturbances, since a sharp cost is rough.
+schedule. Where a step gains nothing more, slopes are taken over wider differences, since a sharp cost is rough.
 """
 
 from __future__ import annotations
