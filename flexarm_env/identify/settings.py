@@ -423,7 +423,11 @@ class Promising:
     )
     least_change: float = tuned(1e-6, "A change of the errors below this share is none.")
     largest_factor: float = tuned(10.0, "Largest factor by which an effect's size is changed at once.")
-    windows: int = tuned(40, "Windows in which effects are weighed, spread over all recordings.", "10 s; the six best of a practice case rank as in all of them")
+    windows: int = tuned(
+        40,
+        "Windows in which effects are weighed, spread over all recordings.",
+        "10 s; the six best of a practice case rank as in all of them",
+    )
     every: int = tuned(2, "Of the levels of process noise that suit the errors, every so many are considered.")
 
 
