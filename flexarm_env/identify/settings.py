@@ -687,6 +687,11 @@ class Selecting:
         0.03, "Effects are equivalent if what they leave differs by less than this share of what they remove."
     )
     same_excess: float = tuned(0.1, "And by less than one of them leaves, or this excess, whichever is more.")
+    signal_rest: float = tuned(
+        0.01,
+        "Share of a signal's excess that may be left where it does not come near the noise, though all signals together do.",
+        "a strain gage read at a tenth of the rate ends at 1.43 of its noise, with 0.05 % left",
+    )
     noticed: float = tuned(
         0.1,
         "The error of a signal that moves by more than this share is noticed: an effect touches it, or makes it worse.",
