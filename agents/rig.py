@@ -15,7 +15,7 @@ from flexarm_env.tasks import Task
 from tests.rig import SIGNALS
 from tests.rig.experiments import stream
 from tests.rig.settings import make_beam, make_modes, make_par, make_sense, resolve
-from tests.rig.simulate import SIGMA
+from tests.rig.simulate import READINGS, SIGMA
 
 from truth_rig.kernel import STATES, TH, interval, latch, moments  # isort: skip  # tests.rig gives the kernel this name
 
@@ -45,17 +45,17 @@ class Machine:
         self.modal = make_modes(values, beam, self.parameters["h"])
         size = beam.omega2.size
         self.state, self.bend, self.bend_rate, self.force = np.zeros(STATES), np.zeros(size), np.zeros(size), np.zeros(size)
-        self.commands, self.clean = np.zeros(samples), np.zeros((samples + 1, len(SIGNALS)))
+        self.commands, self.clean = np.zeros(samples), np.zeros((samples + 1, len(READINGS)))
         self.noise = values["noise"] * SIGMA * stream(seed, "drive", "noise").standard_normal((samples + 1, len(SIGNALS)))
         self.steps = np.array([self.senses[f"step_{name}"] for name in ("angle", "speed", "strain", "strain")])
         self.tip_row, self.gain = beam.shape[-1], self.senses["ksg_base"]
         self.sample = 0
-        latch(self.state, self.senses, 0.0, self.clean[0])
+        latch(self.state, self.bend, self.modal[0], self.senses, 0.0, self.clean[0])
 
     def readings(self) -> Floats:
         """Read the sensors (signals,), with noise and the converters' steps."""
         late = max(self.sample - int(self.senses["late_samples"]), 0)
-        found: Floats = np.rint((self.clean[late] + self.noise[self.sample]) / self.steps) * self.steps
+        found: Floats = np.rint((self.clean[late, : len(SIGNALS)] + self.noise[self.sample]) / self.steps) * self.steps
         return found
 
     def move(self, command: float) -> None:

@@ -29,6 +29,8 @@ LEAST_EXCESS = LEAST_COMMAND = 1e-9
 LARGEST_LOG = 20.0
 #: Smallest frequency [Hz] that divides: of an arm that does not vibrate.
 LEAST_FREQUENCY = 1e-9
+#: Weight of a group of lead times without readings.
+LEAST_COUNT = 1e-9
 #: Smallest norm that divides.
 LEAST_NORM = 1e-300
 
@@ -374,6 +376,78 @@ class Observers:
 
 
 @dataclass(frozen=True)
+class Forecasts:
+    """Forecasts from filtered states, and the disturbances that explain their errors."""
+
+    horizon: float = tuned(
+        0.25,
+        "Length of the windows in which readings are forecast.",
+        "of 0.1, 0.25, 0.5 and 1 s on a real rigid axis all order hypotheses alike; longer ones are rougher where a hub sticks",
+        "s",
+    )
+    groups: int = tuned(14, "Groups of lead times within a window.", "spaced evenly in the logarithm")
+    first_torque: float = tuned(0.1, "Process noise at which a first calibration begins, over the rms torque of the drive.")
+    least_torque: float = tuned(5e-5, "Smallest process noise, over the rms torque of the drive: all but a free replay.")
+    largest_torque: float = tuned(100.0, "Largest process noise, over the rms torque of the drive.")
+    least_readings: float = tuned(
+        0.14, "Smallest variance of a sensor's noise, over that assumed.", "stated noise is seldom 2.7 times too large"
+    )
+    largest_readings: float = tuned(1e8, "Largest variance of a sensor's noise, over that assumed.")
+    torque_step: float = tuned(2.0, "Factor between levels of process noise that are tried.", "3 ends 12 % above the least cost")
+    torques_tried: int = tuned(12, "Levels to either side that are tried without a replay.")
+    readings_tried: int = tuned(120, "Variances of a sensor's noise that are tried without a replay, evenly in the logarithm.")
+    block: float = tuned(0.5, "Length of the blocks over which densities of models are compared.", unit="s")
+
+
+@dataclass(frozen=True)
+class ForecastFit:
+    """Gauss–Newton steps on forecasts."""
+
+    iterations: int = tuned(20, "Most steps.")
+    brief_iterations: int = tuned(6, "Most steps of a candidate.", "no sweep recorded")
+    settled: float = tuned(1e-4, "Gain per sample, in log density, that a step makes unless it is idle.")
+    settled_share: float = tuned(0.02, "And share of what is left, since a model that lacks an effect need not be exact.")
+    cooling: float = tuned(
+        4.0, "Factor by which process noise may fall in a step, so that values settle before errors grow rough."
+    )
+
+
+@dataclass(frozen=True)
+class Promising:
+    """Promises of effects, before any is fitted."""
+
+    torques: tuple[float, ...] = tuned(
+        (1.0, 0.1),
+        "Process noise of the observers under which effects are weighed, over that which the errors call for.",
+        "effects on torques show under a weak observer, those on sensors under either",
+    )
+    least_change: float = tuned(1e-6, "A change of the errors below this share is none.")
+    largest_factor: float = tuned(10.0, "Largest factor by which an effect's size is changed at once.")
+    windows: int = tuned(
+        40,
+        "Windows in which effects are weighed, spread over all recordings.",
+        "10 s; the six best of a practice case rank as in all of them",
+    )
+    every: int = tuned(2, "Of the levels of process noise that suit the errors, every so many are considered.")
+
+
+@dataclass(frozen=True)
+class ForecastSearching:
+    """A search by the density of forecasts."""
+
+    width: int = tuned(3, "Models of one number of effects that are extended.")
+    finalists: int = tuned(3, "Effects that promise most and are calibrated beside each model.")
+    near_promise: float = tuned(0.5, "Others are, too, if they promise this share of what the best promises.")
+    most_finalists: int = tuned(5, "Effects calibrated beside each model at most.")
+    near_cost: float = tuned(3.0, "Models of up to this multiple of the best's cost are calibrated to the end beside it.")
+    standard_errors: float = tuned(3.0, "Standard errors over blocks by which an effect must raise the density.", "three sigma")
+    largest_block: float = tuned(3.0, "Gain of a block, over the median, that counts: a model that fails once fails there a lot.")
+    rival_errors: float = tuned(2.0, "Standard errors over blocks within which models count as equal.", "two sigma")
+    same_share: float = tuned(0.1, "Share of what both gain beyond which models differ, whatever the scatter.")
+    same_density: float = tuned(6.0, "Difference of the log density within which models count as equal.", "400 to 1")
+
+
+@dataclass(frozen=True)
 class Parameters:
     """Scales, priors and difference steps of the values that a calibration moves."""
 
@@ -613,6 +687,11 @@ class Selecting:
         0.03, "Effects are equivalent if what they leave differs by less than this share of what they remove."
     )
     same_excess: float = tuned(0.1, "And by less than one of them leaves, or this excess, whichever is more.")
+    signal_rest: float = tuned(
+        0.01,
+        "Share of a signal's excess that may be left where it does not come near the noise, though all signals together do.",
+        "a strain gage read at a tenth of the rate ends at 1.43 of its noise, with 0.05 % left",
+    )
     noticed: float = tuned(
         0.1,
         "The error of a signal that moves by more than this share is noticed: an effect touches it, or makes it worse.",
@@ -895,6 +974,10 @@ class Settings:
     initial_states: InitialStates = InitialStates()
     process_noise: ProcessNoise = ProcessNoise()
     observers: Observers = Observers()
+    forecasts: Forecasts = Forecasts()
+    forecast_fit: ForecastFit = ForecastFit()
+    promising: Promising = Promising()
+    forecast_searching: ForecastSearching = ForecastSearching()
     parameters: Parameters = Parameters()
     least_squares: LeastSquares = LeastSquares()
     calibrating: Calibrating = Calibrating()

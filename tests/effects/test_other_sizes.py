@@ -66,7 +66,7 @@ def test_it_moves_as_a_lighter_one_does(arm, name):
 
 @pytest.mark.parametrize("resized", [heavier, commanded_in_other_units, gaged_in_other_units])
 def test_effects_explain_what_they_do_at_the_thesis_s_size(arm, resized: Callable[[Arm], Arm]):
-    machine = arm.with_effect("constant_torque", torque=0.02)
+    machine = arm.with_effect("constant_torque", torque=0.025)
     found = []
     for model, hidden in ((arm, machine), (resized(arm), resized(machine))):
         nominal, data = prepare(model, [simulate(hidden, kind, duration=3.0, rate=200.0, seed=3) for kind in ("square", "pulse")])

@@ -74,7 +74,7 @@ BAD = {
     "short row": (GOOD.replace("0.1,2,0.6", "0.1,2"), ["row 3", "2 cells"]),
     "long row": (GOOD.replace("0.1,2,0.6", "0.1,2,0.6,9"), ["row 3", "4 cells"]),
     "cut off": (GOOD[:-5], ["row 4"]),
-    "remark among the numbers": (GOOD + "# the end\n", ["row 5"]),
+    "remark among the numbers": (GOOD.replace("0.1,2,0.6", "# half way\n0.1,2,0.6"), ["row 3"]),
     "binary": (b"\x00\x01\x02" + GOOD.encode(), ["binary", "CSV"]),
     "latin-1": ((GOOD.replace("0.6", "0.6°")).encode("latin-1"), ["row 3", "UTF-8"]),
     "utf-16": (GOOD.encode("utf-16"), ["UTF-8"]),

@@ -131,6 +131,24 @@ def minimise(
     return Solution(point.x, point.cost, point.residual, j, steps)
 
 
+def descend(residual: Residual, x: Floats, slopes: Floats, prior: Floats, numbers: LeastSquares) -> tuple[Floats, Floats]:
+    """Lower |residual(x)|² + |x / prior|² by damped steps along one Jacobian, which each corrects for the next.
+
+    Args:
+        residual: whitened residual (rows,).
+        x: where to start (x,).
+        slopes: Jacobian there (rows, x).
+        prior: standard deviation of each x around 0.
+        numbers: dampings and step rules.
+
+    Returns:
+        Where the steps ended (x,), and the Jacobian that they corrected (rows, x).
+    """
+    r, j = residual(x), slopes.copy()
+    point = _descend(residual, _Point(x, r, cost_of(r, x, prior), numbers.first_damping), j, prior, numbers)
+    return point.x, j
+
+
 @dataclass(frozen=True)
 class _Point:
     """Where a minimisation stands: x, residual (rows,), cost, and the damping of the next step."""

@@ -80,6 +80,48 @@ def innovation_sigmas(plant: Plant, run: Run, dataset: Dataset, torque_noise: fl
     return np.sqrt(variances)
 
 
+def process_of_moving(plant: Plant, dataset: Dataset) -> tuple[Floats, Floats, Floats]:
+    """Compute the transition of one sample of a moving arm, and its process covariance: that of 1 Nm on the hub, and the rest.
+
+    Returns:
+        Three matrices (states, states).
+    """
+    transition, rest = _process(plant, 0, dataset, 0.0)
+    return transition, _process(plant, 0, dataset, 1.0)[1] - rest, rest
+
+
+def steady_covariance(plant: Plant, dataset: Dataset, torque_noise: float, noise: Floats) -> Floats:
+    """Compute the covariance (states, states) with which a steady-state filter predicts the state of a moving arm.
+
+    Args:
+        plant: a compiled arm.
+        dataset: the recordings.
+        torque_noise: standard deviation of a torque on the hub, new in each sample [Nm].
+        noise: (signals,) standard deviations of the readings.
+    """
+    transition, process = _process(plant, 0, dataset, torque_noise)
+    shared = noise / np.sqrt(dataset.shares)
+    return _riccati(transition, plant.model.output, process, shared, dataset.settings.observers.doublings)
+
+
+def forecast_gains(plant: Plant, dataset: Dataset, torque_noise: float, noise: Floats) -> Floats:
+    """Compute physical gains (modes, states, signals) of the filter that gives forecasts their states.
+
+    A held angle follows its readings as fast as a moving one: it drifts in one sample by as much as that is corrected.
+    """
+    moving = steady_covariance(plant, dataset, torque_noise, noise)
+    seen = plant.model.output @ moving @ plant.model.output.T + np.diag(noise**2)
+    corrected = np.linalg.solve(seen, plant.model.output @ moving)
+    drift = np.sqrt(np.maximum(np.diag(corrected.T @ seen @ corrected), 0.0))
+    gains = np.zeros((plant.modes, plant.states, len(noise)))
+    for mode in range(plant.modes):
+        transition, process = _process(plant, mode, dataset, torque_noise)
+        for body in _held(plant, mode):
+            process[body, body] += drift[body] ** 2
+        gains[mode] = _gain_of(transition, process, plant.model.output, noise, dataset)
+    return gains
+
+
 def modal_gains(plant: Plant, physical: Floats) -> Floats:
     """Convert physical gains to those of the kernel (modes, 2 blocks + bodies, signals)."""
     size = 2 * plant.blocks
@@ -98,7 +140,7 @@ def _process(plant: Plant, mode: int, dataset: Dataset, torque_noise: float, hel
     transition, push = plant.transition(mode, interval)
     model = plant.model
     size = len(model.names)
-    held = [body for body in range(plant.bodies) if (mode >> body) & 1]
+    held = _held(plant, mode)
     impulse = torque_noise * interval
     process = np.zeros((plant.states, plant.states))
     mobility = np.linalg.inv(model.mass)
@@ -114,10 +156,19 @@ def _process(plant: Plant, mode: int, dataset: Dataset, torque_noise: float, hel
     return transition, process
 
 
+def _held(plant: Plant, mode: int) -> list[int]:
+    """List the bodies that are held in a mode."""
+    return [body for body in range(plant.bodies) if (mode >> body) & 1]
+
+
 def _gain(plant: Plant, mode: int, dataset: Dataset, torque_noise: float, held_drift: float) -> Floats:
-    numbers, noise = dataset.settings.observers, dataset.noise
     transition, process = _process(plant, mode, dataset, torque_noise, held_drift)
-    output = plant.model.output
+    return _gain_of(transition, process, plant.model.output, dataset.noise, dataset)
+
+
+def _gain_of(transition: Floats, process: Floats, output: Floats, noise: Floats, dataset: Dataset) -> Floats:
+    """Compute the steady-state gain (states, signals); zero where it would not be stable."""
+    numbers = dataset.settings.observers
     # A signal that comes in a share of the samples tells as much as one in all of them with the noise that averages to its own.
     covariance = _riccati(transition, output, process, noise / np.sqrt(dataset.shares), numbers.doublings)
     seen = output @ covariance @ output.T + np.diag(noise**2)

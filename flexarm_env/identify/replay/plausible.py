@@ -14,16 +14,16 @@ from flexarm_env.recordings.recording import Recording
 
 
 def check_steps(recording: Recording, numbers: Preparation) -> None:
-    """Refuse samples so far apart that a window of errors would not hold two of them.
+    """Refuse samples so far apart that a window of errors would hold no two of them.
 
     Raises:
-        InputError: if the median step is longer than half a window.
+        InputError: if the median step is as long as a window.
     """
     step = recording.sample_time
-    if step > numbers.window / 2:
+    if step >= numbers.window:
         raise InputError(
             f"{recording.name}: samples are {step:.4g} s apart, too far to follow an arm's motion; "
-            f"at most {numbers.window / 2:g} s are allowed: is the unit of time right?"
+            f"less than {numbers.window:g} s is allowed: is the unit of time right?"
         )
 
 

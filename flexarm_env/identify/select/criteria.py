@@ -133,11 +133,15 @@ class ThresholdCriteria:
         return all(left <= (1.0 - self.settings.selecting.least_total_gain) * before for before, left in pairs)
 
     def leaves_only_noise(self, score: Score) -> bool:
-        """Whether windows end at the noise, in all signals together and near it in each that the effects touch."""
-        errors, noticed = self.settings.errors, self.settings.selecting.noticed
-        pairs = [(self.refitted.signals[signal].over_noise, one.over_noise) for signal, one in score.signals.items()]
-        touched = [after for before, after in pairs if abs(after - before) > noticed * before]
-        return score.windows <= errors.explained and all(after <= errors.close for after in touched)
+        """Whether windows end at the noise, in all signals together, and in each that the effects touch near it.
+
+        A signal that is a small part of the readings may end further off, as long as hardly any of its excess is left.
+        """
+        errors, numbers = self.settings.errors, self.settings.selecting
+        pairs = [(self.refitted.signals[signal], one) for signal, one in score.signals.items()]
+        touched = [pair for pair in pairs if abs(pair[1].over_noise - pair[0].over_noise) > numbers.noticed * pair[0].over_noise]
+        near = [one.over_noise <= errors.close or one.excess <= numbers.signal_rest * was.excess for was, one in touched]
+        return score.windows <= errors.explained and all(near)
 
     def is_fully_explained(self, found: Model) -> bool:
         """Whether a model explains the data and leaves hardly more than noise: an imitation does not."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 
@@ -18,6 +19,17 @@ from flexarm_env.identify.select.screen import Trial, control_of, screen
 from flexarm_env.identify.select.stepwise import extend_chain
 from flexarm_env.identify.select.swap import RivalComparison, compare_rivals
 from flexarm_env.identify.select.trace import Accepted, Trace, Tried
+
+
+class SearchMethod(Protocol):
+    """A search over effects."""
+
+    def run(self, base: Model, progress: Progress) -> Trace:
+        """Search from the calibrated constants."""
+
+
+#: Builds a search that judges by some criteria.
+SearchFactory = Callable[[Calibrator, Criteria], SearchMethod]
 
 
 @dataclass(frozen=True)
