@@ -69,7 +69,7 @@ def test_parameters_of_effects(effect):
         wanted, width = differences(arm, name)
         found = np.column_stack([slopes[name][signal] for signal in arm.signals])
         size = np.max(np.abs(wanted), axis=0)
-        assert np.all(np.max(np.abs(found - wanted), axis=0) <= tolerance * size + 3 * width + 1e-9 * size.max()), name
+        assert np.all(np.max(np.abs(found - wanted), axis=0) <= tolerance * size + 3 * width + 1e-8 * size.max()), name
 
 
 @pytest.mark.slow(minutes=2)
