@@ -13,11 +13,11 @@ from typing import Any
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
-from benchmarks import environments, faults, plant, report, start  # noqa: E402
+from benchmarks import environments, faults, jacobian, plant, report, start  # noqa: E402
 from benchmarks.diagnosis import measure as diagnosis  # noqa: E402
 from benchmarks.diagnosis.cases import CASES  # noqa: E402
 
-PARTS = {"plant": plant, "start": start, "diagnosis": diagnosis, "environments": environments}
+PARTS = {"plant": plant, "jacobian": jacobian, "start": start, "diagnosis": diagnosis, "environments": environments}
 #: Left out of a whole run, and with options of its own.
 ON_REQUEST = {"faults": faults}
 OUTPUT = Path(__file__).resolve().parent.parent / "results" / "bench" / "bench.json"

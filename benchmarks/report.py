@@ -47,6 +47,7 @@ GOALS = (
     Goal("six_over_base", "four elements, six effects: a step over the one above", "×", most=8),
     Goal("six_error", "… its error against DOP853 with the same laws", most=1e-6),
     Goal("six_error_32_times_finer", "… its error against steps 32 times as short", most=1e-6),
+    Goal("jacobian_over_replay", "derivatives by twelve constants over a corrected replay, largest of six", "×", most=3),
     Goal("nothing_and_parameters_longest_s", "diagnosis on 2 cores: nothing missing, wrong constants", "s", most=4),
     Goal("one_effect_median_s", "… one effect, median", "s", most=10),
     Goal("one_effect_longest_s", "… one effect, longest", "s", most=15),

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from flexarm_env.arm import Arm
 from flexarm_env.experiments.plans import Plan
 from flexarm_env.plant import layout
+from flexarm_env.plant.tangents.tangents import Tangents
 from flexarm_env.thesis_drive import DERIVATIVE, GEAR_RATIO, PROPORTIONAL, command_scale
 
 Floats = NDArray[np.float64]
@@ -77,6 +78,14 @@ class Rig:
         played = self.plant.replay(np.ascontiguousarray(commands), *intervals)
         self.truth[first:], self.truth[:first] = played, played[0]
         return self._sensor_output(slice(first, None))
+
+    def replay_derivatives(self, commands: Floats, intervals: tuple[Floats, ...], tangents: Tangents) -> Floats:
+        """Replay commands, and return the derivatives of the readings without noise and steps (count, signals, constants)."""
+        first, derivatives = self.ahead, np.zeros((*self.truth.shape, tangents.count))
+        self.truth[first:], derivatives[first:] = tangents.replay(np.ascontiguousarray(commands), *intervals)
+        derivatives[:first] = derivatives[first]
+        before, after = (derivatives[rows[first:], self.columns] for rows in (self.before, self.after))
+        return before + self.share[first:, :, None] * (after - before)
 
     def _sensor_output(self, k: int | slice) -> Floats:
         """Compute the readings at sample k from the truth: late by the dead time, with noise, in steps."""

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.experiments.derivatives import full_path, tangents_of
 from flexarm_env.experiments.payload import check_payload, stated_payload, with_payload
 from flexarm_env.experiments.plans import EXPERIMENTS, plan_of, random_stream
 from flexarm_env.experiments.plausible import check_motion
@@ -22,6 +25,36 @@ Floats = NDArray[np.float64]
 MOST_SAMPLES = 10_000_000
 
 
+#: Derivatives (n,) of the readings of each signal, by constant, then by signal.
+Derivatives = Mapping[str, Mapping[str, Floats]]
+
+
+@overload
+def simulate(
+    arm: Arm,
+    input: str | os.PathLike[str] | Recording = ...,
+    duration: float = ...,
+    rate: float = ...,
+    seed: int = ...,
+    noise: bool = ...,
+    name: str | None = ...,
+) -> Recording: ...
+
+
+@overload
+def simulate(
+    arm: Arm,
+    input: str | os.PathLike[str] | Recording = ...,
+    duration: float = ...,
+    rate: float = ...,
+    seed: int = ...,
+    noise: bool = ...,
+    name: str | None = ...,
+    *,
+    derivatives: Sequence[str],
+) -> tuple[Recording, Derivatives]: ...
+
+
 def simulate(
     arm: Arm,
     input: str | os.PathLike[str] | Recording = "pulse",
@@ -30,7 +63,8 @@ def simulate(
     seed: int = 0,
     noise: bool = True,
     name: str | None = None,
-) -> Recording:
+    derivatives: Sequence[str] | None = None,
+) -> Recording | tuple[Recording, Derivatives]:
     """Simulate an arm from rest at angle 0 and record it. The same arguments give the same bits.
 
     Args:
@@ -44,9 +78,18 @@ def simulate(
         seed: of noise, pulses and phases.
         noise: whether readings get noise and the sensor's steps. A sensor with noise = "auto" gets none, and a note says so.
         name: of the recording; that of the input by default.
+        derivatives: names of constants and of parameters of effects, as "hub.inertia", "coulomb.torque". Derivatives are taken
+            at the commands as recorded, of the readings without noise and steps, through stick, slip and contact. They hold
+            for changes that add and remove no event. The laws of effects are differentiated by narrow differences. Their kernel
+            is compiled at the first use, which takes some 90 s; docs/model.md has an example.
+
+    Returns:
+        The recording; with `derivatives` also those by constant and signal, {"hub.inertia": {"arm_angle": (n,), …}, …}, in the
+        signal's unit over that of the constant.
 
     Raises:
-        InputError: for an input that does not exist or does not fit the arm, and for a motion beyond any arm's.
+        InputError: for an input that does not exist or does not fit the arm, a motion beyond any arm's, or a constant by which
+            there is no derivative.
 
     Examples:
         >>> from flexarm_env import Arm, simulate
@@ -66,7 +109,20 @@ def simulate(
     else:
         source = input if isinstance(input, Recording) else _read(input)
         made = _replay(arm, source, seed, noise, name or source.name)
-    return replace(made, notes=_notes(arm)) if noise else made
+    if noise:
+        made = replace(made, notes=_notes(arm))
+    return made if derivatives is None else (made, _derivatives(arm, made, derivatives))
+
+
+def _derivatives(arm: Arm, made: Recording, names: Sequence[str]) -> Derivatives:
+    """Differentiate the readings of a recording that the arm made, at its commands."""
+    paths = [full_path(arm, name) for name in names]
+    carried = with_payload(arm, stated_payload(made))
+    even, interval = _sampling(made.time)
+    rig = Rig(carried, 1.0 / interval, len(made), None)
+    tangents = tangents_of(carried, rig.plant, paths)
+    found = rig.replay_derivatives(made.command, () if even else (np.diff(made.time),), tangents)
+    return {name: {signal: found[:, i, number] for i, signal in enumerate(arm.signals)} for number, name in enumerate(names)}
 
 
 def _notes(arm: Arm) -> tuple[str, ...]:

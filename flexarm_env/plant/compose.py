@@ -122,13 +122,20 @@ def _switch(port: str, laws: Sequence[Law]) -> str:
     return "\n\n".join([*sources, "\n".join(lines)])
 
 
-def _plain(path: Path) -> str:
+def plain(path: Path) -> str:
     """Read a kernel file without its imports, which the generated module brings itself, and without `at.`."""
     return PREFIX.sub("", without_imports(path))
 
 
-class _Compiled(ast.NodeTransformer):
-    """Turn the kernels' annotations into signatures, so that each is compiled once, and make their indices unsigned."""
+class Compiled(ast.NodeTransformer):
+    """Turn the kernels' annotations into signatures, so that each is compiled once, and make their indices unsigned.
+
+    Args:
+        entrances: kernels that Python calls.
+    """
+
+    def __init__(self, entrances: Sequence[str]) -> None:
+        self.entrances = entrances
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
         """Replace the bare decorator of a kernel."""
@@ -139,7 +146,7 @@ class _Compiled(ast.NodeTransformer):
             return node
         self.generic_visit(node)
         signature = [_signature(node)]  # this removes the annotations, too
-        every = OPTIONS if node.name in ENTRANCES else OPTIONS | NO_WRAPPERS
+        every = OPTIONS if node.name in self.entrances else OPTIONS | NO_WRAPPERS
         options += [ast.keyword(name, ast.Constant(value)) for name, value in every.items()]
         signatures = [] if "inline" in given else signature
         node.decorator_list = [ast.Call(ast.Name("njit", ast.Load()), signatures, options)]
@@ -184,9 +191,9 @@ def _unsigned(index: ast.expr) -> ast.expr:
 def source_of(laws: Sequence[Law]) -> str:
     """Compose the text of the kernel with these laws in its switches, before signatures and unsigned indices are added."""
     here = Path(__file__).parent
-    parts = [IMPORTS, _plain(here / "layout.py")]
+    parts = [IMPORTS, plain(here / "layout.py")]
     parts += [_switch(port, laws) for port in PORT_ARGUMENTS]
-    parts += [_plain(here / file) for file in FILES]
+    parts += [plain(here / file) for file in FILES]
     text = "\n\n".join(parts) + "\n"
     return text
 
@@ -211,6 +218,6 @@ def _module(text: str) -> ModuleType:
     return generated_module(
         "flexarm_kernel",
         f"{numba.__version__}\n{own}\n{text}",
-        lambda: ast.unparse(_Compiled().visit(ast.parse(text))),
+        lambda: ast.unparse(Compiled(ENTRANCES).visit(ast.parse(text))),
         lambda: logging.getLogger(__name__).warning("Compiling the plant, once for these effects: about 30 s"),
     )

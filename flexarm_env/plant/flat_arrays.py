@@ -13,12 +13,14 @@ from numpy.typing import ArrayLike, NDArray
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.active_laws import LAW_LISTS, ActiveLaw, law_lists
 from flexarm_env.plant.beam import Matrix, spread_out, turned
+from flexarm_env.plant.blocks import blocks_of
 from flexarm_env.plant.event_free_table import DEPTH, table_size
-from flexarm_env.plant.modal import Mode, complete, mode_of
+from flexarm_env.plant.modal import Decompose, Mode, complete, mode_of
 from flexarm_env.plant.structure import (
     DRIVERS,
     HUB_TORQUE,
     MOTOR_TORQUE,
+    SHORTEST_LAG,
     Key,
     LinearModel,
     Structure,
@@ -40,7 +42,11 @@ TOLERANCE = 1e-12
 
 
 def pack(
-    structure: Structure, model: LinearModel, laws: Sequence[Sequence[ActiveLaw]], interval: float
+    structure: Structure,
+    model: LinearModel,
+    laws: Sequence[Sequence[ActiveLaw]],
+    interval: float,
+    decompose: Decompose = blocks_of,
 ) -> tuple[Matrix, NDArray[np.int64], int]:
     """Pack (d, n, whole samples of delay) for the kernel, without the tables that `prepare` writes.
 
@@ -49,6 +55,7 @@ def pack(
         model: their matrices.
         laws: those at work, for each arm; they differ in their parameters only.
         interval: sampling time [s].
+        decompose: gives the blocks of the dynamics of each mode.
 
     Returns:
         d is (numbers,), or for stacked arms (arms, numbers).
@@ -56,10 +63,10 @@ def pack(
     active = laws[0]
     ports = frozenset(law.port for law in active) & LINEAR_PORTS
     varying = any(law.varies for law in active)
-    if is_stacked(structure):
-        linear = _linear_numbers(structure, model, ports, varying)
-    else:
+    if _is_cached(structure, decompose):
         linear = _linear_numbers_of_one(structure.key, ports, varying)
+    else:
+        linear = _linear_numbers(structure, model, ports, varying, decompose)
     n, arms = linear.counts.copy(), model.mass.shape[:-2]
     whole, early = split_delay(structure.input_delay, interval)
     parts = np.zeros((*arms, 2))
@@ -92,14 +99,16 @@ class LinearNumbers:
 def _linear_numbers_of_one(key: Key, ports: frozenset[str], varying: bool) -> LinearNumbers:
     """Compute the numbers of one arm, cached: fits try many arms whose laws alone differ."""
     structure = structure_of(key)
-    found = _linear_numbers(structure, assemble(structure), ports, varying)
+    found = _linear_numbers(structure, assemble(structure), ports, varying, blocks_of)
     found.counts.flags.writeable = found.values.flags.writeable = False
     return found
 
 
-def _linear_numbers(structure: Structure, model: LinearModel, ports: frozenset[str], varying: bool) -> LinearNumbers:
+def _linear_numbers(
+    structure: Structure, model: LinearModel, ports: frozenset[str], varying: bool, decompose: Decompose
+) -> LinearNumbers:
     """Compute what the linear quantities give, for laws of some ports, of which any or none varies while a body turns."""
-    modes, points, arms = _modes(structure, model), _points(model, ports), model.mass.shape[:-2]
+    modes, points, arms = _modes(structure, model, decompose), _points(model, ports), model.mass.shape[:-2]
     n = _counts(structure, model, modes, len(points), varying)
     records = [_record(structure, model, mode, which, points, n) for which, mode in enumerate(modes)]
     place = 0
@@ -127,25 +136,30 @@ class _Motion:
     model: LinearModel = field(compare=False)
 
 
-def _modes(structure: Structure, model: LinearModel) -> Sequence[Mode]:
+def _is_cached(structure: Structure, decompose: Decompose) -> bool:
+    """Whether what the linear quantities give is kept: of one arm, decomposed in the ordinary way."""
+    return decompose is blocks_of and not is_stacked(structure)
+
+
+def _modes(structure: Structure, model: LinearModel, decompose: Decompose) -> Sequence[Mode]:
     """Decompose the arm in every mode."""
-    if is_stacked(structure):
-        return _decomposed(structure, model)
+    if not _is_cached(structure, decompose):
+        return _decomposed(structure, model, decompose)
     quantities, sensors = structure.key
-    with_states = model.extra.shape[-1] > int(exceeds(structure.current_lag, 0.0))
+    with_states = model.extra.shape[-1] > int(exceeds(structure.current_lag, SHORTEST_LAG))
     return _decomposed_one(_Motion((quantities, sensors if with_states else ()), structure, model))
 
 
 @lru_cache(maxsize=16)
 def _decomposed_one(motion: _Motion) -> Sequence[Mode]:
     """Decompose one arm, cached: fits try many arms whose sensors alone differ."""
-    return _decomposed(motion.structure, motion.model)
+    return _decomposed(motion.structure, motion.model, blocks_of)
 
 
-def _decomposed(structure: Structure, model: LinearModel) -> Sequence[Mode]:
+def _decomposed(structure: Structure, model: LinearModel, decompose: Decompose) -> Sequence[Mode]:
     bodies = 2 if structure.separate_motor else 1
     count = 8 if exceeds(structure.gear_gap, 0.0) else 2**bodies
-    modes = [mode_of(structure, model, which) for which in range(count)]
+    modes = [mode_of(structure, model, which, decompose) for which in range(count)]
     for which, mode in enumerate(modes):
         for body in range(bodies):
             if not which >> body & 1:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -26,6 +27,8 @@ SLOWEST_DECAY = 1e-16
 #: Inverse of an inertia [1/(kg m²)], or of a mass, from which products with it need not be finite.
 LARGEST_INVERSE = 1e100
 
+Decompose = Callable[[Matrix], tuple[Matrix, Matrix, Matrix, Matrix]]
+
 
 @dataclass
 class Mode:
@@ -46,13 +49,14 @@ class Mode:
     hold_beam: Matrix  # (bodies, forces on the beam)
 
 
-def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
+def mode_of(structure: Structure, model: LinearModel, which: int, decompose: Decompose = blocks_of) -> Mode:
     """Decompose the arm in one mode.
 
     Args:
         structure: for the gears' stiffness, inertia and gap.
         model: the matrices.
         which: HUB_STUCK, MOTOR_STUCK and GEAR_OPEN added up.
+        decompose: gives c0, c1, V, W of the dynamics (see blocks_of).
     """
     frame = _frame(len(model.names), "motor" in model.names, model.extra.shape[-1], which)
     free, held = frame.free, frame.held
@@ -65,7 +69,7 @@ def mode_of(structure: Structure, model: LinearModel, which: int) -> Mode:
     inverse = _inverse(free.T @ inertial)
     answer = inverse @ free.T  # accelerations by forces
     dynamics = _dynamics(model, free, stiffness, damping, inverse)
-    c0, c1, v, w = blocks_of(dynamics)
+    c0, c1, v, w = decompose(dynamics)
     rows, bodies = slice(free.shape[1], 2 * free.shape[1]), 2 if "motor" in model.names else 1
     force = _padded(answer @ drivers, dynamics, rows)
     force[..., rows.stop :, :] = model.extra_from_input

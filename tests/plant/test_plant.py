@@ -164,6 +164,10 @@ def test_a_plant_does_not_depend_on_those_before_it(name: str) -> None:
         arm.with_effect("coulomb", torque=0.01),
         arm.with_effect("stribeck", extra=0.01, falloff_speed=0.1),
         arm.with_effect("current_lag", time=0.01),
+        *(
+            arm.with_values({f"sensors.{sensor}.filter": filter}).with_effect("current_lag", time=1e-10)  # too short to count
+            for filter in (0.02, 0.03)
+        ),
         arm.with_effect("base_tilt", torque=0.01, uphill=0.2),
     ]
     alone = []

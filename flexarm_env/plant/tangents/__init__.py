@@ -1,0 +1,1 @@
+"""Forward sensitivities: derivatives of the readings with respect to constants, carried with the state through events."""
