@@ -14,15 +14,8 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.replay.dataset import Dataset
-from flexarm_env.identify.replay.forecast import (
-    Disturbances,
-    Leads,
-    Observer,
-    Spread,
-    forecast_errors,
-    lead_times,
-    spread_of,
-)
+from flexarm_env.identify.replay.forecast import Disturbances, Observer, forecast_errors
+from flexarm_env.identify.replay.forecast_spread import Leads, Spread, lead_times, spread_of
 from flexarm_env.identify.replay.scales import torque_scale
 from flexarm_env.identify.settings import LEAST_COUNT
 

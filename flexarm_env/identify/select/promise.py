@@ -18,7 +18,8 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.forecast_fit import error_slopes, narrowed
 from flexarm_env.identify.calibrate.parameters import FitParameters
 from flexarm_env.identify.replay.density import Prediction, at_torque, best_readings, torque_levels
-from flexarm_env.identify.replay.forecast import FilteredStates, Leads, filtered_states
+from flexarm_env.identify.replay.forecast import FilteredStates, filtered_states
+from flexarm_env.identify.replay.forecast_spread import Leads
 from flexarm_env.identify.select.starts import sized, starts_of
 from flexarm_env.identify.settings import LEAST_NORM
 
