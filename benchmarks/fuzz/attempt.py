@@ -20,7 +20,8 @@ from flexarm_env import Arm, InputError, Recording, simulate
 from flexarm_env.arm_file import arm_text
 from flexarm_env.recordings.column_maps import load_columns
 
-#: A file that takes longer [s], more memory [bytes] or a longer line is a find, as is one that is neither read nor refused.
+#: A file that takes longer [s], more memory [bytes, beyond the most that the process has had] or a longer line is a find,
+#: as is one that is neither read nor refused.
 LONGEST, MOST_MEMORY, LONGEST_LINE = 10.0, 10**9, 2000
 READ, REFUSED = "read", "refused"
 #: Shares of the kinds among the files.
@@ -103,8 +104,8 @@ def attempt(seed: int, number: int, folder: Path, readers: Mapping[str, Reader] 
     what = _read(path, sound, readers[sound.kind])
     if what in (READ, REFUSED) and time.perf_counter() - began > LONGEST:
         what = f"took {time.perf_counter() - began:.0f} s"
-    if _memory() > max(MOST_MEMORY, before):
-        what = f"took {_memory() / 1e6:.0f} MB"
+    if (taken := _memory() - before) > MOST_MEMORY:
+        what = f"took {taken / 1e6:.0f} MB"
     return Outcome(number, sound.kind, what)
 
 

@@ -66,7 +66,8 @@ def test_a_reader_at_fault_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert words in outcome.what
 
 
-def test_a_reader_that_takes_a_gigabyte_is_found(tmp_path, monkeypatch):
-    memory = iter([10**8, *[2 * 10**9] * 2])
+@pytest.mark.parametrize(("most_before", "most_after", "what"), [(1e8, 2e9, "took 1900 MB"), (2.1e9, 2.2e9, READ)])
+def test_a_gigabyte_beyond_what_the_process_has_had_is_found(tmp_path, monkeypatch, most_before, most_after, what):
+    memory = iter([most_before, most_after])
     monkeypatch.setattr(trial, "_memory", lambda: next(memory))
-    assert attempt(SEED, 0, tmp_path, dict.fromkeys(READERS, lambda path, sound: None)).what == "took 2000 MB"
+    assert attempt(SEED, 0, tmp_path, dict.fromkeys(READERS, lambda path, sound: None)).what == what
