@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import rig
 
+from benchmarks.machines.cases import case
 from flexarm_env import Arm, Recording
 from flexarm_env.effects import catalogue
 from flexarm_env.identify.explain.effect_curve import driver_of, effect_curve, unexplained_curve
@@ -92,3 +93,10 @@ def test_every_effect_on_the_hub_has_a_driver_and_a_law(arm, name):
         against = law_torque(changed, [name], points, -points, points)
         directed = {"asymmetric_coulomb", "asymmetric_viscous"} & {name}
         assert np.allclose(against, torque if directed else -torque)
+
+
+def test_a_machine_of_a_few_grams_has_a_smoother():
+    small = case(4, 27)  # its states differ by so many decades that an ordered Schur form does not exist
+    motions = hub_torque(small.arm, small.recordings)
+    assert motions
+    assert all(np.isfinite(one.torque).all() for one in motions)

@@ -8,15 +8,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_discrete_are
 
 from flexarm_env.arm import Arm
 from flexarm_env.experiments.payload import with_payload
 from flexarm_env.identify.replay.dataset import Dataset, prepare
+from flexarm_env.identify.replay.observer import riccati
 from flexarm_env.identify.replay.readings import errors_of
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.replay.scales import torque_scale
-from flexarm_env.identify.settings import SETTINGS, Explaining, Settings
+from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.linear import INPUTS, LinearArm
 from flexarm_env.recordings.recording import Recording
 
@@ -74,7 +74,7 @@ def hub_torque_of(arm: Arm, dataset: Dataset) -> list[HubMotion]:
     smoothers = {}
     for payload in plants:
         linear = with_payload(free, payload).linearise("moving", dataset.interval)
-        smoothers[payload] = _smoother(linear, dataset.noise, step, numbers)
+        smoothers[payload] = _smoother(linear, dataset.noise, step, dataset.settings)
     return [
         smoothers[run.payload].smooth(run, plants[run.payload].delayed(run.command), dataset)
         for run in dataset.runs
@@ -183,9 +183,9 @@ class Smoother:
         return HubMotion(run.name, run.time[kept], filtered[kept, hub], filtered[kept, rate], filtered[kept, -1])
 
 
-def _smoother(linear: LinearArm, noise: Floats, step: float, numbers: Explaining) -> Smoother:
+def _smoother(linear: LinearArm, noise: Floats, step: float, settings: Settings) -> Smoother:
     """Design the smoother for a torque that changes by a standard deviation of `step` [Nm] per sample."""
-    states = len(linear.states)
+    states, numbers = len(linear.states), settings.explaining
     transition = np.eye(states + 1)
     transition[:states, :states] = linear.transition
     transition[:states, states] = linear.response[:, INPUTS.index("hub_torque")]
@@ -193,8 +193,8 @@ def _smoother(linear: LinearArm, noise: Floats, step: float, numbers: Explaining
     push = np.append(linear.response[:, INPUTS.index("hub_torque")], 1.0)
     least = numbers.least_noise * np.diag(np.maximum(push**2, np.max(push[:states] ** 2)))
     process = step**2 * (np.outer(push, push) + least)
-    before = solve_discrete_are(transition.T, output.T, process, np.diag(noise**2))
-    gain = np.linalg.solve(output @ before @ output.T + np.diag(noise**2), output @ before).T
+    before = riccati(transition, output, process, noise, settings.observers.doublings)
+    gain = np.asarray(np.linalg.solve(output @ before @ output.T + np.diag(noise**2), output @ before).T, dtype=np.float64)
     after = before - gain @ output @ before
-    back = np.linalg.lstsq(before, transition @ after, rcond=numbers.rank)[0].T
+    back = np.asarray(np.linalg.lstsq(before, transition @ after, rcond=numbers.rank)[0].T, dtype=np.float64)
     return Smoother(linear, transition, output, gain, back)

@@ -48,7 +48,7 @@ def innovation_sigma(plant: Plant, dataset: Dataset, torque_noise: float) -> Flo
     """Compute the standard deviation (signals,) of a moving arm's innovations under the stated noises, if nothing is absent."""
     transition, process = _process(plant, 0, dataset, torque_noise)
     output, noise = plant.model.output, dataset.noise
-    covariance = _riccati(transition, output, process, noise, dataset.settings.observers.doublings)
+    covariance = riccati(transition, output, process, noise, dataset.settings.observers.doublings)
     return np.asarray(np.sqrt(np.diag(output @ covariance @ output.T) + noise**2), dtype=np.float64)
 
 
@@ -66,7 +66,7 @@ def innovation_sigmas(plant: Plant, run: Run, dataset: Dataset, torque_noise: fl
     """
     transition, process = _process(plant, 0, dataset, torque_noise)
     output, noise = plant.model.output, dataset.noise
-    covariance = _riccati(transition, output, process, noise, dataset.settings.observers.doublings)
+    covariance = riccati(transition, output, process, noise, dataset.settings.observers.doublings)
     steps = {}
     variances = np.empty_like(run.measured)
     for k, there in enumerate(~np.isnan(run.measured)):
@@ -101,7 +101,7 @@ def steady_covariance(plant: Plant, dataset: Dataset, torque_noise: float, noise
     """
     transition, process = _process(plant, 0, dataset, torque_noise)
     shared = noise / np.sqrt(dataset.shares)
-    return _riccati(transition, plant.model.output, process, shared, dataset.settings.observers.doublings)
+    return riccati(transition, plant.model.output, process, shared, dataset.settings.observers.doublings)
 
 
 def forecast_gains(plant: Plant, dataset: Dataset, torque_noise: float, noise: Floats) -> Floats:
@@ -170,7 +170,7 @@ def _gain_of(transition: Floats, process: Floats, output: Floats, noise: Floats,
     """Compute the steady-state gain (states, signals); zero where it would not be stable."""
     numbers = dataset.settings.observers
     # A signal that comes in a share of the samples tells as much as one in all of them with the noise that averages to its own.
-    covariance = _riccati(transition, output, process, noise / np.sqrt(dataset.shares), numbers.doublings)
+    covariance = riccati(transition, output, process, noise / np.sqrt(dataset.shares), numbers.doublings)
     seen = output @ covariance @ output.T + np.diag(noise**2)
     gain = np.asarray(np.linalg.solve(seen, output @ covariance).T, dtype=np.float64)
     if not np.isfinite(gain).all():
@@ -179,8 +179,18 @@ def _gain_of(transition: Floats, process: Floats, output: Floats, noise: Floats,
     return gain if np.abs(np.linalg.eigvals(closed)).max() < numbers.unstable else np.zeros_like(gain)
 
 
-def _riccati(transition: Floats, output: Floats, process: Floats, noise: Floats, doublings: int) -> Floats:
-    """Solve the filter's Riccati equation by doubling (Chu, Fan, Lin, Wang, Int. J. Control 77 (2004) 767)."""
+def riccati(transition: Floats, output: Floats, process: Floats, noise: Floats, doublings: int) -> Floats:
+    """Compute the covariance (states, states) of a steady-state filter's predicted state, by doubling.
+
+    It holds for states of any scale, where an ordered Schur form fails (Chu, Fan, Lin, Wang, Int. J. Control 77 (2004) 767).
+
+    Args:
+        transition: of one sample (states, states).
+        output: readings of the states (signals, states).
+        process: covariance of the disturbance in one sample (states, states).
+        noise: (signals,) standard deviations of the readings.
+        doublings: most doublings of the time that is covered.
+    """
     a, h = transition.T.copy(), process.copy()
     g = output.T @ (output / noise[:, None] ** 2)
     eye = np.eye(len(a))
