@@ -440,8 +440,6 @@ class ForecastSearching:
     near_promise: float = tuned(0.5, "Others are, too, if they promise this share of what the best promises.")
     most_finalists: int = tuned(5, "Effects calibrated beside each model at most.")
     near_cost: float = tuned(3.0, "Models of up to this multiple of the best's cost are calibrated to the end beside it.")
-    standard_errors: float = tuned(3.0, "Standard errors over blocks by which an effect must raise the density.", "three sigma")
-    largest_block: float = tuned(3.0, "Gain of a block, over the median, that counts: a model that fails once fails there a lot.")
     rival_errors: float = tuned(2.0, "Standard errors over blocks within which models count as equal.", "two sigma")
     same_share: float = tuned(0.1, "Share of what both gain beyond which models differ, whatever the scatter.")
     same_density: float = tuned(6.0, "Difference of the log density within which models count as equal.", "400 to 1")
