@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibrator import Calibrator
-from flexarm_env.identify.calibrate.forecast_fit import fit_forecasts
+from flexarm_env.identify.calibrate.forecast_fit import fit_briefly, fit_forecasts
 from flexarm_env.identify.calibrate.parameters import FitParameters, free_parameters
 from flexarm_env.identify.progress import Progress
 from flexarm_env.identify.replay.density import Prediction, first_disturbances, likeliest
@@ -50,32 +50,16 @@ class Hypothesis:
         return self.prediction.arm
 
     @functools.cached_property
-    def costs(self) -> Floats:
-        """Negative log density (blocks,) of whole recordings, under the disturbances that make those likeliest."""
-        now = self.prediction
-        return likeliest(now.arm, now.dataset.nothing_held_out(), now.disturbances).block_costs()
-
-    @property
     def cost(self) -> float:
-        """Negative log density of whole recordings."""
-        return float(self.costs.sum())
+        """Negative log density of whole recordings, under the disturbances that make those likeliest."""
+        now = self.prediction
+        return likeliest(now.arm, now.dataset.nothing_held_out(), now.disturbances).cost
 
     @property
     def at_bound(self) -> bool:
         """Whether a parameter of its effects ran to the end of its range: no size of the effect explains the data."""
         paths = [p for p in self.parameters if p.path.split(".")[0] == "effects" and p.path.split(".")[1] in self.effects]
         return any(self.arm.value(p.path) in (p.low, p.high) for p in paths)
-
-    def equals(self, other: Hypothesis, base: Hypothesis, numbers: ForecastSearching) -> bool:
-        """Whether its density differs from another's by no more than chance, and by little of what both gain over a base."""
-        gains = self.costs - other.costs
-        most = min(numbers.rival_errors * _error(gains), numbers.same_share * (base.cost - other.cost))
-        return float(gains.sum()) < max(most, numbers.same_density)
-
-
-def _error(gains: Floats) -> float:
-    """Estimate the standard error of the sum of gains (blocks,)."""
-    return float(np.std(gains)) * float(np.sqrt(len(gains)))
 
 
 #: Hypotheses by their effects, whose order does not count.
@@ -88,8 +72,8 @@ class Proposal:
 
     Attributes:
         model: with all its effects.
-        accepted: its effects, with those that the recordings cannot tell from each.
-        tried: calibrations of all of these.
+        accepted: its effects.
+        tried: the same, with what each gains.
     """
 
     model: Model
@@ -127,15 +111,15 @@ class ForecastSearch:
                 best = min(one.cost for one in known.values())
                 searching, calibrating = stage.split(4, 1)
                 fresh = self._extend(level, searching)
-                level = self._finish(sorted(fresh.values(), key=_fitted_cost)[: self.numbers.width])
+                level = self._finish(fresh, min(_fitted_cost(one) for one in level))
                 known |= fresh | {frozenset(one.effects): one for one in level}
                 chosen = min(level, key=lambda one: one.cost, default=None)
-                if chosen is None or chosen.cost > best - self.numbers.same_density:
+                if chosen is None or chosen.cost > best - self.numbers.least_gain:
                     break
                 calibrating.at(0.0, f"calibrating {' and '.join(chosen.effects)}")
                 model = self._model(chosen)
                 if explains(model):
-                    return self._proposal(base, model, chosen, known)
+                    return self._proposal(base, model, known)
         return None
 
     def _without_effects(self, base: Model) -> list[Hypothesis]:
@@ -145,9 +129,9 @@ class ForecastSearch:
         given = likeliest(nominal, dataset, first_disturbances(nominal, dataset))
         return [calibrated, Hypothesis((), free_parameters(nominal, nominal, dataset), given)]
 
-    def _calibrate(self, effects: tuple[str, ...], arm: Arm, start: Disturbances, steps: int | None = None) -> Hypothesis:
+    def _calibrate(self, effects: tuple[str, ...], arm: Arm, start: Disturbances) -> Hypothesis:
         parameters = free_parameters(arm, self.calibrator.nominal, self.calibrator.dataset)
-        return Hypothesis(effects, parameters, fit_forecasts(arm, parameters, self.calibrator.dataset, start, steps))
+        return Hypothesis(effects, parameters, fit_forecasts(arm, parameters, self.calibrator.dataset, start))
 
     def _extend(self, level: Sequence[Hypothesis], progress: Progress) -> Hypotheses:
         """Calibrate the most promising effects beside each hypothesis of a level."""
@@ -160,7 +144,7 @@ class ForecastSearch:
             stage.at(0.5, f"fitting {', '.join(p.effect for p in wanted)}{_beside(one)}")
             for new in Parallel(prefer="threads")(delayed(self._with)(one, promise) for promise in wanted):
                 key = frozenset(new.effects)
-                if not new.at_bound and (key not in fresh or new.cost < fresh[key].cost):
+                if not new.at_bound and (key not in fresh or _fitted_cost(new) < _fitted_cost(fresh[key])):
                     fresh[key] = new
         return fresh
 
@@ -177,16 +161,18 @@ class ForecastSearch:
         return chosen + [p for p in found if one.effects and p.effect == one.arm.known.pairing and p not in chosen]
 
     def _with(self, one: Hypothesis, promise: Promise) -> Hypothesis:
-        start = replace(one.prediction.disturbances, torque=promise.torque)
+        dataset, start = self.calibrator.dataset, replace(one.prediction.disturbances, torque=promise.torque)
         arm = one.arm.with_effect(promise.effect, **promise.values)
-        steps = self.calibrator.settings.forecast_fit.brief_iterations
-        return self._calibrate((*one.effects, promise.effect), arm, start, steps)
+        parameters = free_parameters(arm, self.calibrator.nominal, dataset)
+        found = fit_briefly(arm, parameters, dataset, start, promise.slopes)
+        return Hypothesis((*one.effects, promise.effect), parameters, found)
 
-    def _finish(self, level: Sequence[Hypothesis]) -> list[Hypothesis]:
-        """Calibrate the best to the end, and others that are near it; best first."""
+    def _finish(self, fresh: Hypotheses, before: float) -> list[Hypothesis]:
+        """Calibrate the best to the end, and others that gain nearly as much on a cost; best first."""
         done: list[Hypothesis] = []
-        for one in level:
-            if not done or _fitted_cost(one) < self.numbers.near_cost * _fitted_cost(done[0]):
+        for one in sorted(fresh.values(), key=_fitted_cost)[: self.numbers.width]:
+            least = self.numbers.near_gain * (before - _fitted_cost(done[0])) if done else -np.inf
+            if before - _fitted_cost(one) >= least:
                 one = self._calibrate(one.effects, one.arm, one.prediction.disturbances)
             done = sorted([*done, one], key=_fitted_cost)
         return done
@@ -196,27 +182,16 @@ class ForecastSearch:
         calibrator = self.calibrator
         return judge(one.effects, calibrator.polish(calibrator.calibrate(one.arm)), calibrator.dataset)
 
-    def _proposal(self, base: Model, model: Model, chosen: Hypothesis, known: Hypotheses) -> Proposal:
-        """Calibrate the models with which the chosen one could be confused."""
-        calibrator = self.calibrator
+    def _proposal(self, base: Model, model: Model, known: Hypotheses) -> Proposal:
+        """Share what a model gains among its effects, in the order in which they were added."""
         accepted, tried = [], []
-        for place, name in enumerate(chosen.effects):
-            alike = self._alike(chosen, name, known)
-            before = known.get(frozenset(chosen.effects[: place + 1]))
-            score = model.score if before is None or place + 1 == len(chosen.effects) else calibrator.score(before.arm)
+        for place, name in enumerate(model.effects):
+            before = known.get(frozenset(model.effects[: place + 1])) if place + 1 < len(model.effects) else None
+            score = self.calibrator.score(before.arm) if before else model.score
             gain = min(max(1.0 - score.excess / base.score.excess, 0.0), 1.0)
-            accepted.append(Accepted(name, (name, *alike), score))
-            calibrations = {other: calibrator.calibrate(one.arm) for other, one in alike.items()}
-            tried += [Tried(other, gain, calibration) for other, calibration in calibrations.items()]
+            accepted.append(Accepted(name, (name,), score))
             tried.append(Tried(name, gain, model.calibration))
         return Proposal(model, accepted, tried)
-
-    def _alike(self, chosen: Hypothesis, effect: str, known: Hypotheses) -> dict[str, Hypothesis]:
-        """Find the hypotheses with another effect in the place of one that the recordings cannot tell from the chosen one."""
-        beside, base = set(chosen.effects) - {effect}, known[frozenset()]
-        others = [one for one in known.values() if len(one.effects) == len(chosen.effects) and beside < set(one.effects)]
-        alike = [one for one in others if effect not in one.effects and one.equals(chosen, base, self.numbers)]
-        return {next(iter(set(one.effects) - beside)): one for one in sorted(alike, key=lambda one: one.cost)}
 
 
 def _fitted_cost(one: Hypothesis) -> float:

@@ -87,7 +87,10 @@ class Search:
         fraction of that are less misled.
         """
         found = ForecastSearch(self.calibrator).propose(trace.steps[0].model, self.criteria.is_fully_explained, progress)
-        return trace if found is None else trace.then("forecast", found.model, found.accepted, found.tried)
+        if found is None:
+            return trace
+        longer = trace.then("forecast", found.model, found.accepted, found.tried)
+        return self.drop_useless(self.swap(longer, progress, untried=True))
 
     def combine(self, trace: Trace, progress: Progress) -> Trace:
         """Accept effects that explain the data only together, if there are some."""
@@ -102,15 +105,21 @@ class Search:
         ]
         return trace.then("combine", chain[-1], accepted, tried)
 
-    def swap(self, trace: Trace, progress: Progress) -> Trace:
+    def swap(self, trace: Trace, progress: Progress, untried: bool = False) -> Trace:
         """Give an effect's place to one that it is confused with, where that fits better beside everything else.
 
         An effect that came in first was compared with its rivals while others were missing still, and a companion with none.
+
+        Args:
+            trace: so far.
+            progress: of this stage.
+            untried: whether no effect was compared with any, so that each is, though hardly more than noise is left.
         """
         for place, effect in enumerate(trace.effects):
             if not self.criteria.can_compare_rivals(trace.model):
                 break
-            if trace.model.arm.known[effect].pairs_with_all or self.criteria.leaves_room(trace.model):
+            is_companion = trace.model.arm.known[effect].pairs_with_all
+            if untried or is_companion or self.criteria.leaves_room(trace.model):
                 comparison = compare_rivals(self.calibrator, self.criteria, effect, trace.model, progress)
                 trace = exchange(trace, place, comparison)
         names = trace.effects
