@@ -16,11 +16,10 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 from benchmarks.hidden_effects import baselines, sindy, table  # noqa: E402
 from benchmarks.hidden_effects.calibrate import calibrate  # noqa: E402
 from benchmarks.hidden_effects.cases import cases, sample  # noqa: E402
-from benchmarks.hidden_effects.run import by_diagnosis, by_forecasts, run  # noqa: E402
+from benchmarks.hidden_effects.run import by_diagnosis, run  # noqa: E402
 
 METHODS = {
     "diagnose": by_diagnosis,
-    "forecasts": by_forecasts,
     "bic": baselines.stepwise,
     "sindy": sindy.sindy_on_residuals,
 }

@@ -13,7 +13,6 @@ from joblib import Parallel, delayed
 import flexarm_env
 from flexarm_env import Arm, Recording, diagnose
 from flexarm_env.files import write_whole
-from flexarm_env.identify.select.forecast_search import ForecastSearch
 from flexarm_env.terminal.provenance import commit
 
 Method = Callable[[Arm, Sequence[Recording]], dict[str, Any]]
@@ -36,11 +35,6 @@ class Case(Protocol):
 def by_diagnosis(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
     """Diagnose, with the result as of `flexarm diagnose --json`."""
     return diagnose(arm, recordings, jobs=1).as_json()
-
-
-def by_forecasts(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
-    """Diagnose with the search by the density of forecasts."""
-    return diagnose(arm, recordings, jobs=1, search=ForecastSearch).as_json()
 
 
 def _answer(case: Case, method: Method, folder: Path) -> dict[str, Any]:

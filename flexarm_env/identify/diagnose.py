@@ -18,7 +18,7 @@ from flexarm_env.identify.replay.preflight import preflight
 from flexarm_env.identify.results import Diagnosis
 from flexarm_env.identify.select.criteria import CriteriaFactory, ThresholdCriteria
 from flexarm_env.identify.select.model import judge
-from flexarm_env.identify.select.search import Search, SearchFactory
+from flexarm_env.identify.select.search import Search
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.identify.workers import Workers
 from flexarm_env.recordings.recording import Recording
@@ -33,7 +33,6 @@ def diagnose(
     settings: Settings = SETTINGS,
     criteria: CriteriaFactory = ThresholdCriteria,
     rate: float | None = None,
-    search: SearchFactory = Search,
 ) -> Diagnosis:
     """Diagnose an arm against recordings.
 
@@ -46,7 +45,6 @@ def diagnose(
         settings: numbers of the method.
         criteria: by which effects are accepted.
         rate: samples per second [Hz] that are kept; 0 keeps all. By default, as many as the arm needs.
-        search: `Search`, which lowers errors in windows, or `ForecastSearch`, which raises the density of forecasts.
 
     Returns:
         The verdict, the missing effects, and the corrected arm; or the faults of the recordings, which are looked for first.
@@ -80,7 +78,7 @@ def diagnose(
     nominal_score = calibrator.score(nominal)
     rules = criteria(nominal_score, base.score, error_measure(nominal).judges_free_run, settings)
 
-    trace = search(calibrator, rules).run(base, searching)
+    trace = Search(calibrator, rules).run(base, searching)
 
     verdict = rules.verdict(trace.effects, trace.model)
     found = conclude(verdict, trace, nominal_score, arm, recordings, calibrator, seed)

@@ -396,7 +396,6 @@ class Forecasts:
     torque_step: float = tuned(2.0, "Factor between levels of process noise that are tried.", "3 ends 12 % above the least cost")
     torques_tried: int = tuned(12, "Levels to either side that are tried without a replay.")
     readings_tried: int = tuned(120, "Variances of a sensor's noise that are tried without a replay, evenly in the logarithm.")
-    block: float = tuned(0.5, "Length of the blocks over which densities of models are compared.", unit="s")
 
 
 @dataclass(frozen=True)
@@ -439,12 +438,8 @@ class ForecastSearching:
     finalists: int = tuned(3, "Effects that promise most and are calibrated beside each model.")
     near_promise: float = tuned(0.5, "Others are, too, if they promise this share of what the best promises.")
     most_finalists: int = tuned(5, "Effects calibrated beside each model at most.")
-    near_cost: float = tuned(3.0, "Models of up to this multiple of the best's cost are calibrated to the end beside it.")
-    standard_errors: float = tuned(3.0, "Standard errors over blocks by which an effect must raise the density.", "three sigma")
-    largest_block: float = tuned(3.0, "Gain of a block, over the median, that counts: a model that fails once fails there a lot.")
-    rival_errors: float = tuned(2.0, "Standard errors over blocks within which models count as equal.", "two sigma")
-    same_share: float = tuned(0.1, "Share of what both gain beyond which models differ, whatever the scatter.")
-    same_density: float = tuned(6.0, "Difference of the log density within which models count as equal.", "400 to 1")
+    near_gain: float = tuned(0.5, "Models that gain this share of what the best gains are calibrated to the end beside it.")
+    least_gain: float = tuned(6.0, "Gain of the log density below which one more effect ends the search.", "400 to 1")
 
 
 @dataclass(frozen=True)

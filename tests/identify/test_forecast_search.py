@@ -8,7 +8,6 @@ import pytest
 
 from flexarm_env import Arm, Recording, diagnose, simulate
 from flexarm_env.identify.results import Diagnosis
-from flexarm_env.identify.select.forecast_search import ForecastSearch
 
 #: A flexible arm without dry friction, whose tip is seen by a camera.
 MODEL = """
@@ -52,7 +51,7 @@ def machine_with(arm: Arm, torques: dict[str, float]) -> Arm:
 
 
 def search(arm: Arm, recording: Recording, jobs: int = 1) -> Diagnosis:
-    return diagnose(arm, [recording], jobs=jobs, search=ForecastSearch)
+    return diagnose(arm, [recording], jobs=jobs)
 
 
 @pytest.mark.parametrize(

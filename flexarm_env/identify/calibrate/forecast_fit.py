@@ -6,7 +6,7 @@ schedule. Where a step gains nothing more, slopes are taken over wider differenc
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,16 +17,14 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.least_squares import descend
 from flexarm_env.identify.calibrate.parameters import FitParameters
 from flexarm_env.identify.replay.dataset import Dataset
-from flexarm_env.identify.replay.density import Prediction, likeliest
+from flexarm_env.identify.replay.density import Prediction, likeliest, suited
 from flexarm_env.identify.replay.forecast import Disturbances, window_samples
 from flexarm_env.identify.settings import LEAST_NORM
 
 Floats = NDArray[np.float64]
 
 
-def fit_forecasts(
-    arm: Arm, parameters: FitParameters, dataset: Dataset, start: Disturbances, iterations: int | None = None
-) -> Prediction:
+def fit_forecasts(arm: Arm, parameters: FitParameters, dataset: Dataset, start: Disturbances) -> Prediction:
     """Calibrate values of an arm, from those that it has, by the density of its forecasts.
 
     Args:
@@ -34,23 +32,19 @@ def fit_forecasts(
         parameters: of the fitted values, and their priors.
         dataset: the recordings.
         start: disturbances to begin with.
-        iterations: most Gauss–Newton steps; those of the settings if left out.
 
     Returns:
         The forecasts of the calibrated arm.
     """
     numbers = dataset.settings.forecast_fit
-    best = likeliest(arm, dataset, start)
+    best = suited(arm, dataset, start)
     if not len(parameters):
-        return best
+        return likeliest(arm, dataset, best.disturbances)
     slopes, is_fresh, is_wide = error_slopes(best, parameters), True, False
-    for _ in range(numbers.iterations if iterations is None else iterations):
-        x, slopes = _descend(best, parameters, slopes)
-        least = best.disturbances.torque / numbers.cooling
-        now = likeliest(parameters.apply(best.arm, x), dataset, best.disturbances, least)  # under another observer
-        gain = best.cost - now.cost
-        best = min(best, now, key=lambda prediction: prediction.cost)
-        if gain > max(numbers.settled * len(best.errors), numbers.settled_share * best.cost):
+    for _ in range(numbers.iterations):
+        now, slopes = _step(best, parameters, slopes)
+        is_idle, best = _is_idle(best, now), min(best, now, key=lambda prediction: prediction.cost)
+        if not is_idle:
             is_fresh = False
             continue
         if is_fresh and is_wide:
@@ -58,7 +52,44 @@ def fit_forecasts(
         is_wide = is_wide or is_fresh
         slopes = wide_error_slopes(best, parameters, slopes) if is_wide else error_slopes(best, parameters)
         is_fresh = True
+    return likeliest(best.arm, dataset, best.disturbances)
+
+
+def fit_briefly(
+    arm: Arm, parameters: FitParameters, dataset: Dataset, start: Disturbances, slopes: Mapping[str, Floats]
+) -> Prediction:
+    """Calibrate values as `fit_forecasts` does, along slopes that are known of a similar arm, until a step gains little.
+
+    Args:
+        arm: the model.
+        parameters: of the fitted values, and their priors.
+        dataset: the recordings.
+        start: disturbances to begin with.
+        slopes: (readings,) of forecast errors over the noise, by the path of a value. Others are computed.
+    """
+    best = suited(arm, dataset, start)
+    own = FitParameters(tuple(parameter for parameter in parameters if parameter.path not in slopes))
+    known = dict(zip([parameter.path for parameter in own], error_slopes(best, own).T, strict=True)) | dict(slopes)
+    matrix = np.stack([known[parameter.path] for parameter in parameters], axis=1)
+    for _ in range(dataset.settings.forecast_fit.brief_iterations):
+        now, matrix = _step(best, parameters, matrix)
+        is_idle, best = _is_idle(best, now), min(best, now, key=lambda prediction: prediction.cost)
+        if is_idle:
+            break
     return best
+
+
+def _step(best: Prediction, parameters: FitParameters, slopes: Floats) -> tuple[Prediction, Floats]:
+    """Take steps under one observer, and forecast under the one that then suits; also give the slopes that they corrected."""
+    x, slopes = _descend(best, parameters, slopes)
+    least = best.disturbances.torque / best.dataset.settings.forecast_fit.cooling
+    return suited(parameters.apply(best.arm, x), best.dataset, best.disturbances, least), slopes
+
+
+def _is_idle(before: Prediction, after: Prediction) -> bool:
+    """Whether a step gains so little that another along the same slopes is in vain."""
+    numbers = before.dataset.settings.forecast_fit
+    return before.cost - after.cost <= max(numbers.settled * len(before.errors), numbers.settled_share * before.cost)
 
 
 def _descend(prediction: Prediction, parameters: FitParameters, slopes: Floats) -> tuple[Floats, Floats]:

@@ -69,20 +69,6 @@ class Prediction:
         """Compute the errors (rows, signals) of another arm under the same observer."""
         return forecast_errors(arm, self.dataset, self.dataset.fitted, self.observer)
 
-    def block_costs(self) -> Floats:
-        """Compute the negative log density (blocks,) of whole recordings, the held-out part included."""
-        runs = self.dataset.runs
-        errors = forecast_errors(self.arm, self.dataset, runs, self.observer)
-        leads = lead_times(self.dataset, runs)
-        variance = self.variance[leads.group]
-        costs = 0.5 * np.where(leads.present, errors**2 / variance + np.log(variance) - 1.0, 0.0).sum(axis=1)
-        block = round(self.dataset.settings.forecasts.block / self.dataset.interval)
-        starts, first = [], 0
-        for run in runs:
-            starts += list(range(first, first + len(run.command), block))
-            first += len(run.command)
-        return np.add.reduceat(costs, starts)
-
 
 def predict(arm: Arm, dataset: Dataset, disturbances: Disturbances) -> Prediction:
     """Forecast the fitted part under given disturbances."""
@@ -92,11 +78,8 @@ def predict(arm: Arm, dataset: Dataset, disturbances: Disturbances) -> Predictio
     return Prediction(arm, dataset, disturbances, observer, errors, leads, spread_of(plants, dataset, leads))
 
 
-def likeliest(arm: Arm, dataset: Dataset, start: Disturbances, least_torque: float = 0.0) -> Prediction:
-    """Find the disturbances under which an arm's forecasts of the fitted part are likeliest.
-
-    Errors depend on the observer, and the observer on the disturbances. The torque that suits the present errors is tried first.
-    Where it falls, the observer smooths less and the errors change, so smaller and larger ones are tried by replays of their own.
+def suited(arm: Arm, dataset: Dataset, start: Disturbances, least_torque: float = 0.0) -> Prediction:
+    """Forecast the fitted part under disturbances that suit the errors under given ones, if those make it likelier.
 
     Args:
         arm: the model.
@@ -104,20 +87,28 @@ def likeliest(arm: Arm, dataset: Dataset, start: Disturbances, least_torque: flo
         start: disturbances to begin with.
         least_torque: the smallest process noise [Nm] that is considered.
     """
-    step = dataset.settings.forecasts.torque_step
-    best = _with_readings(predict(arm, dataset, start))
-    torque = max(_suitable_torque(best), least_torque)
-    if torque != best.disturbances.torque:
-        best = min(best, at_torque(best, torque), key=lambda p: p.cost)
-    for factor in (1.0 / step, step):
+    given = _with_readings(predict(arm, dataset, start))
+    torque = max(_suitable_torque(given), least_torque)
+    if torque == given.disturbances.torque:
+        return given
+    return min(given, at_torque(given, torque), key=lambda prediction: prediction.cost)
+
+
+def likeliest(arm: Arm, dataset: Dataset, start: Disturbances) -> Prediction:
+    """Find the disturbances under which an arm's forecasts of the fitted part are likeliest.
+
+    Errors depend on the observer, and the observer on the disturbances. Where the torque falls, the observer smooths less and the
+    errors change, so smaller and larger ones than suit the present errors are tried by replays of their own.
+
+    Args:
+        arm: the model.
+        dataset: the recordings.
+        start: disturbances to begin with.
+    """
+    best = suited(arm, dataset, start)
+    for factor in (1.0 / dataset.settings.forecasts.torque_step, dataset.settings.forecasts.torque_step):
         better = False
-        while True:
-            torque = factor * best.disturbances.torque
-            if torque < least_torque:
-                break
-            other = at_torque(best, torque)
-            if other.cost >= best.cost:
-                break
+        while (other := at_torque(best, factor * best.disturbances.torque)).cost < best.cost:
             best, better = other, True
         if better:
             break

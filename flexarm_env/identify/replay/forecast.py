@@ -110,13 +110,7 @@ def _forecast(arm: Arm, plant: Plant, run: Run, observer: Observer) -> Floats:
         readings[start : start + length] = _play(plant, run, command, start, length)
         plant.state[:] = state
         _play(plant, run, command, start, length, gains)
-    return _errors(run, readings, observer.dataset)
-
-
-def _errors(run: Run, readings: Floats, dataset: Dataset, rows: slice = slice(None)) -> Floats:
-    """Compute errors over the noise (samples, signals), infinite where a replay that failed leaves any range."""
-    with np.errstate(over="ignore"):
-        return run.errors(readings, dataset.noise, rows)
+    return run.errors(readings, observer.dataset.noise)
 
 
 def _play(plant: Plant, run: Run, command: Floats, start: int, length: int, gains: Floats = NO_GAINS) -> Floats:
@@ -168,7 +162,7 @@ class FilteredStates:
             for start, state in zip(starts, states, strict=True):
                 plant.state[:] = state
                 rows = slice(start, start + length)
-                parts.append(_errors(run, _play(plant, run, command, start, length), self.dataset, rows))
+                parts.append(run.errors(_play(plant, run, command, start, length), self.dataset.noise, rows))
         return _finite(np.concatenate(parts))
 
     @property

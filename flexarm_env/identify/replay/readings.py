@@ -18,7 +18,8 @@ def errors_of(measured: Floats, modelled: Floats, sigma: Floats | float = 1.0) -
         modelled: of the same shape.
         sigma: (signals,) or one number, in the unit of the readings.
     """
-    errors = (measured - modelled) / sigma
+    with np.errstate(over="ignore"):  # a replay that failed leaves any range: its error is infinite
+        errors = (measured - modelled) / sigma
     errors[np.isnan(measured)] = 0.0
     return np.asarray(errors)
 

@@ -7,8 +7,8 @@ density of what then remains, under the disturbances that it would need, is the 
 from __future__ import annotations
 
 import functools
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from joblib import Parallel, delayed
@@ -36,6 +36,7 @@ class Promise:
         cost: negative log density of the fitted part that it would leave.
         gain: by which that is less than without it.
         torque: process noise [Nm] of the observer under which it promises that.
+        slopes: (readings,) of the errors over the noise there without it, by the path of each value.
     """
 
     effect: str
@@ -43,6 +44,7 @@ class Promise:
     cost: float
     gain: float
     torque: float
+    slopes: Mapping[str, Floats] = field(repr=False, compare=False)
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,7 @@ class Background:
         states: from which the arm and others are forecast.
         errors: (rows, signals) over the noise.
         sigma: (rows, signals) deviation of the errors, at least that which they have.
+        slopes: (readings,) of all errors over the noise, by the path of each value.
         orthonormal: (readings, values) basis of the changes that the values can make under their priors.
         growth: (levels, groups, signals) variance of forecasts under levels of torque, over that of the noise.
     """
@@ -62,6 +65,7 @@ class Background:
     states: FilteredStates
     errors: Floats
     sigma: Floats
+    slopes: Mapping[str, Floats]
     orthonormal: Floats
     growth: Floats
 
@@ -116,19 +120,21 @@ def _background(parameters: FitParameters, prediction: Prediction) -> Background
     leads = prediction.leads.of(rows)
     errors = states.errors(prediction.arm)
     sigma = np.sqrt(np.maximum(prediction.variance, leads.mean_squares(errors)))[leads.group]
-    slopes = error_slopes(prediction, parameters)[np.repeat(rows, errors.shape[1])] / sigma.ravel()[:, None]
-    stacked = np.vstack([slopes, np.diag(1.0 / narrowed(parameters, prediction))])
+    slopes = error_slopes(prediction, parameters)
+    whitened = slopes[np.repeat(rows, errors.shape[1])] / sigma.ravel()[:, None]
+    stacked = np.vstack([whitened, np.diag(1.0 / narrowed(parameters, prediction))])
     orthonormal = np.linalg.qr(stacked)[0][: errors.size]
     levels = [replace(prediction.disturbances, torque=torque) for torque in torque_levels(prediction)[:: numbers.every]]
     growth = np.array([prediction.spread.growth(level) for level in levels])
-    return Background(prediction, states, errors, sigma, orthonormal, growth)
+    by_path = dict(zip([parameter.path for parameter in parameters], slopes.T, strict=True))
+    return Background(prediction, states, errors, sigma, by_path, orthonormal, growth)
 
 
 def _promise(backgrounds: Sequence[Background], base: float, effect: str, start: dict[str, float]) -> Promise:
     """Estimate the promise of an effect from one of its starts."""
     arm = backgrounds[0].prediction.arm
     numbers = backgrounds[0].prediction.dataset.settings.promising
-    best = Promise(effect, start, base, 0.0, backgrounds[0].prediction.disturbances.torque)
+    best = Promise(effect, start, base, 0.0, backgrounds[0].prediction.disturbances.torque, backgrounds[0].slopes)
     for background in backgrounds:
         change = background.change(arm.with_effect(effect, **start))
         power = float(change @ change)
@@ -140,7 +146,8 @@ def _promise(backgrounds: Sequence[Background], base: float, effect: str, start:
             cost = background.cost(background.left + (factor if turned is None else -factor) * change)
             if cost < best.cost:
                 values = sized(arm, effect, turned or start, factor) if factor != 1.0 else turned or start
-                best = Promise(effect, values, cost, base - cost, background.prediction.disturbances.torque)
+                torque = background.prediction.disturbances.torque
+                best = Promise(effect, values, cost, base - cost, torque, background.slopes)
     return best
 
 

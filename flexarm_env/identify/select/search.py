@@ -1,11 +1,10 @@
-"""Search for the effects that a model lacks: forward, swap, drop; stepwise where nothing stands out alone."""
+"""Search for the effects that a model lacks: forward, swap, drop; by forecasts where that leaves more than noise."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Protocol
 
 import numpy as np
 
@@ -13,23 +12,13 @@ from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.progress import Progress
 from flexarm_env.identify.select.criteria import Criteria, Measure
 from flexarm_env.identify.select.fits import fit_models
+from flexarm_env.identify.select.forecast_search import ForecastSearch
 from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.propose import nearest, none_comes_near, others, starts_of_search
 from flexarm_env.identify.select.screen import Trial, control_of, screen
 from flexarm_env.identify.select.stepwise import extend_chain
 from flexarm_env.identify.select.swap import RivalComparison, compare_rivals
 from flexarm_env.identify.select.trace import Accepted, Trace, Tried
-
-
-class SearchMethod(Protocol):
-    """A search over effects."""
-
-    def run(self, base: Model, progress: Progress) -> Trace:
-        """Search from the calibrated constants."""
-
-
-#: Builds a search that judges by some criteria.
-SearchFactory = Callable[[Calibrator, Criteria], SearchMethod]
 
 
 @dataclass(frozen=True)
@@ -47,7 +36,7 @@ class Search:
     def run(self, base: Model, progress: Progress) -> Trace:
         """Search from the calibrated constants: add the best effect, calibrate, again, until nothing is left or nothing helps."""
         most = self.calibrator.settings.selecting.most_effects
-        *rounds, swapping, combining, last = progress.split(*([5, 2] * most), 2, 3, 1)
+        *rounds, swapping, forecasting = progress.split(*([5, 2] * most), 2, 4)
         trace = Trace.begin(base)
         for adding, exchanging in zip(rounds[::2], rounds[1::2], strict=True):
             longer = self.add(trace, adding)
@@ -59,10 +48,9 @@ class Search:
         if len(trace.accepted) == 1:
             trace = self.swap(trace, swapping)
         trace = self.drop_useless(trace)
-        if base.score.windows <= self.calibrator.settings.errors.explained or self.criteria.explains(trace.model):
+        if base.score.windows <= self.calibrator.settings.errors.explained or self.criteria.is_fully_explained(trace.model):
             return trace
-        longer = self.combine(trace, combining, all_constants=True)
-        return self.drop_useless(self.swap(longer, last)) if len(longer.steps) > len(trace.steps) else longer
+        return self.ask_forecasts(trace, forecasting)
 
     def add(self, trace: Trace, progress: Progress) -> Trace:
         """Add the effect that removes most, if it is worthwhile; record all that were tried."""
@@ -92,15 +80,21 @@ class Search:
         possible = [m for m in models if not m.at_bound]
         return self._accept(trace, possible) if possible else trace
 
-    def combine(self, trace: Trace, progress: Progress, all_constants: bool) -> Trace:
-        """Accept effects that explain the data only together, if there are some.
+    def ask_forecasts(self, trace: Trace, progress: Progress) -> Trace:
+        """Accept the model that forecasts ask for in place of another, if it alone explains the data.
 
-        Args:
-            trace: so far.
-            progress: of this stage.
-            all_constants: whether effects are calibrated with all constants, which may compensate for them.
+        Errors over a second or more show what is missing where one effect is. Where several hide each other, forecasts over a
+        fraction of that are less misled.
         """
-        chain = extend_chain(self.calibrator, self.criteria, trace.chain, all_constants, progress) if trace.chain else ()
+        found = ForecastSearch(self.calibrator).propose(trace.steps[0].model, self.criteria.is_fully_explained, progress)
+        if found is None:
+            return trace
+        longer = trace.then("forecast", found.model, found.accepted, found.tried)
+        return self.drop_useless(self.swap(longer, progress, untried=True))
+
+    def combine(self, trace: Trace, progress: Progress) -> Trace:
+        """Accept effects that explain the data only together, if there are some."""
+        chain = extend_chain(self.calibrator, self.criteria, trace.chain, progress) if trace.chain else ()
         trace = replace(trace, chain=chain)
         if not chain or not self.criteria.is_fully_explained(chain[-1]):
             return trace
@@ -111,15 +105,21 @@ class Search:
         ]
         return trace.then("combine", chain[-1], accepted, tried)
 
-    def swap(self, trace: Trace, progress: Progress) -> Trace:
+    def swap(self, trace: Trace, progress: Progress, untried: bool = False) -> Trace:
         """Give an effect's place to one that it is confused with, where that fits better beside everything else.
 
         An effect that came in first was compared with its rivals while others were missing still, and a companion with none.
+
+        Args:
+            trace: so far.
+            progress: of this stage.
+            untried: whether no effect was compared with any, so that each is, though hardly more than noise is left.
         """
         for place, effect in enumerate(trace.effects):
             if not self.criteria.can_compare_rivals(trace.model):
                 break
-            if trace.model.arm.known[effect].pairs_with_all or self.criteria.leaves_room(trace.model):
+            is_companion = trace.model.arm.known[effect].pairs_with_all
+            if untried or is_companion or self.criteria.leaves_room(trace.model):
                 comparison = compare_rivals(self.calibrator, self.criteria, effect, trace.model, progress)
                 trace = exchange(trace, place, comparison)
         names = trace.effects
@@ -149,7 +149,7 @@ class Search:
         trace = replace(trace, chain=(*trace.chain, best))
         if not none_comes_near(self.criteria, models, trace.model):
             return trace
-        return self.combine(trace, progress, all_constants=False)
+        return self.combine(trace, progress)
 
     def _recalibrate(self, trace: Trace) -> Trace:
         """Calibrate once more without anything new: that gain is no merit of another effect."""

@@ -7,14 +7,11 @@ from collections.abc import Sequence
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.progress import Progress
 from flexarm_env.identify.select.criteria import Criteria
-from flexarm_env.identify.select.fits import fit_with_all_constants
 from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.screen import screen
 
 
-def extend_chain(
-    calibrator: Calibrator, criteria: Criteria, chain: Sequence[Model], all_constants: bool, progress: Progress
-) -> tuple[Model, ...]:
+def extend_chain(calibrator: Calibrator, criteria: Criteria, chain: Sequence[Model], progress: Progress) -> tuple[Model, ...]:
     """Extend a chain of models, each of one more effect, until one is fully explained or no effect fits better than none.
 
     Each step takes the effect that fits best beside the others, as stepwise regression does. Some effects also imitate
@@ -24,7 +21,6 @@ def extend_chain(
         calibrator: of the recordings.
         criteria: of the search.
         chain: to be extended; its first model has no effect.
-        all_constants: whether, where no effect helps, each is calibrated with all constants, which may compensate for it.
         progress: of this extension.
 
     Returns:
@@ -33,7 +29,7 @@ def extend_chain(
     models = list(chain)
     while len(models) <= calibrator.settings.selecting.most_effects:
         last = models[-1]
-        step = _best_addition(calibrator, last, all_constants, progress)
+        step = _best_addition(calibrator, last, progress)
         if step is None:
             return tuple(models)
         models.append(Model((*last.effects, *step.effects), step.calibration, step.score, step.fitted_score))
@@ -46,13 +42,12 @@ def extend_chain(
     return ()
 
 
-def _best_addition(calibrator: Calibrator, last: Model, all_constants: bool, progress: Progress) -> Model | None:
+def _best_addition(calibrator: Calibrator, last: Model, progress: Progress) -> Model | None:
     """Calibrate with the effect that fits best beside those of a model, as far as it goes where it comes near."""
     trials = screen(calibrator, [last.calibration], progress)
     best = min(trials, key=lambda trial: trial.cost)
     if not best.effect:
-        found = fit_with_all_constants(calibrator, last.calibration, trials, (), progress) if all_constants else []
-        return min(found, key=lambda m: m.fitted_score.windows, default=None)
+        return None
     errors, dataset = calibrator.settings.errors, calibrator.dataset
     with calibrator.workers.threads():
         step = judge((best.effect,), calibrator.calibrate(best.arm), dataset)

@@ -47,7 +47,7 @@ class Step:
     """One step of a search.
 
     Attributes:
-        action: "calibrate", "screen", "fit", "recalibrate", "accept", "combine", "swap" or "drop".
+        action: "calibrate", "screen", "fit", "recalibrate", "accept", "combine", "forecast", "swap" or "drop".
         model: the best one after the step.
         accepted: effects after the step.
         tried: effects that the step compared.
