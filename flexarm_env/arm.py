@@ -220,8 +220,19 @@ class Arm(Shown):
         if section == "sensors":
             return self.sensor(rest[0]).settings()[rest[1]]
         found = SECTIONS[section][rest[0]]
-        # a torque drive has no torque constant of its own: the one in its place is 1
-        return replace(found, spread=0.0) if path == "drive.torque_constant" and self.input == "torque" else found
+        return replace(found, spread=0.0) if self._is_settled(path) else found
+
+    def _is_settled(self, path: str) -> bool:
+        """Whether a base constant is no property of this arm that a fit could move.
+
+        So are the 1 in the place of a torque drive's constant, the shares of friction in front of a joint, where the hub is as
+        well, and a mass that no gravity acts on.
+        """
+        return (
+            (path == "drive.torque_constant" and self.input == "torque")
+            or (path.endswith("_share") and "joint" in self.constants)
+            or (path == "link.mass" and self.constants["link"]["tilt"] == 0.0)
+        )
 
     def value(self, path: str) -> float:
         """Look up a value in SI units.

@@ -1,4 +1,4 @@
-"""A stop of rubber or metal that ends the arm's travel on one side."""
+"""Stops of rubber or metal that end the arm's travel."""
 
 from __future__ import annotations
 
@@ -9,30 +9,30 @@ from flexarm_env.parameters import Parameter
 
 
 class EndStop(Effect):
-    """A stop of rubber or metal that ends the arm's travel on one side."""
+    """Stops of rubber or metal that end the arm's travel."""
 
     name = "end_stop"
-    equation = "τ = −k (θ − θ_s + T ω) beyond θ_s, never pulling"
+    equation = "τ = −k (θ − θ_s + T ω) beyond θ_s on either side, never pulling"
     parameters: ClassVar = {
-        "stiffness": Parameter("N*m/rad", 0.0, 1e6, 20.0, null=0.0, meaning="k, of the stop"),
-        "place": Parameter("rad", -12.6, 12.6, 1.0, meaning="θ_s, angle of contact; its sign is the side that is closed"),
-        "damping_time": Parameter("s", 0.0, 0.1, 2e-3, meaning="T, damping of the stop over k"),
+        "stiffness": Parameter("N*m/rad", 0.0, 1e6, 20.0, null=0.0, meaning="k, of the stops"),
+        "upper": Parameter("rad", -12.6, 12.6, 0.8, meaning="θ_s, angle of contact at the upper end"),
+        "lower": Parameter("rad", -12.6, 12.6, -0.8, meaning="θ_s at the lower end"),
+        "damping_time": Parameter("s", 0.0, 0.1, 2e-3, meaning="T, damping of the stops over k"),
     }
     looks_like = "the angle never passes a value, and the arm bounces back from it"
     confused_with = ("cable_stiffness", "saturation")
     source = "Hunt and Crossley, J. Appl. Mech. 42 (1975) 440, with linear stiffness"
 
     @staticmethod
-    def torque(angle, speed, stiffness, place, damping_time):
-        """Push back towards the free side."""
-        side = 1.0 if place >= 0.0 else -1.0
-        depth = side * (angle - place)
-        if depth <= 0.0:
-            return 0.0
-        return -side * max(stiffness * (depth + damping_time * side * speed), 0.0)
+    def torque(angle, speed, stiffness, upper, lower, damping_time):
+        """Push back into the range."""
+        if angle > upper:
+            return -max(stiffness * (angle - upper + damping_time * speed), 0.0)
+        if angle < lower:
+            return max(stiffness * (lower - angle - damping_time * speed), 0.0)
+        return 0.0
 
     @classmethod
     def starts(cls) -> list[dict[str, float]]:
-        """Stops near and far, on both sides."""
-        places = (-1.6, -0.8, -0.4, 0.4, 0.8, 1.6)
-        return [{"stiffness": 20.0, "place": place, "damping_time": 2e-3} for place in places]
+        """Narrow and wide ranges."""
+        return [{"stiffness": 20.0, "upper": place, "lower": -place, "damping_time": 2e-3} for place in (0.3, 0.6, 1.2)]

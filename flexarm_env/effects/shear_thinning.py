@@ -23,6 +23,7 @@ class ShearThinning(Effect):
     )
     confused_with = ("viscous", "coulomb", "stribeck")
     source = "Mamedov and Mikhel, Front. Robot. AI 7 (2020) 48: friction in proportion to the root of the speed"
+    modifies = "viscous"
     varies = True
     motor_share = "motor_viscous_share"
 
