@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 from one_joint import elastic_joint, pendulum, servo
@@ -14,8 +15,9 @@ def lubricated() -> Arm:
     return pendulum(vertical=False).with_effect("viscous", coefficient=0.02)
 
 
-def geared_servo() -> Arm:
-    return servo().with_effect("coulomb", torque=0.01).with_effect("load_friction", coefficient=0.2)
+def geared() -> Arm:
+    arm = pendulum(vertical=False).with_effect("coulomb", torque=0.02).with_effect("load_friction", coefficient=0.2)
+    return replace(arm, fixed=["link.inertia"])  # what is lost on the way there and back is that of any inertia
 
 
 def damped_pendulum() -> Arm:
@@ -25,7 +27,7 @@ def damped_pendulum() -> Arm:
 #: Effect, machine, true values, and the accuracy to which each is recovered.
 CASES: list[tuple[str, Callable[[], Arm], dict[str, float], float]] = [
     ("shear_thinning", lubricated, {"coefficient": 0.15, "knee": 0.4}, 0.1),
-    ("back_driving", geared_servo, {"coefficient": 0.25}, 0.1),
+    ("back_driving", geared, {"coefficient": 0.25}, 0.1),
     ("end_stop", damped_pendulum, {"stiffness": 30.0, "upper": 0.4, "lower": -0.45, "damping_time": 3e-3}, 0.1),
     ("kinematic_error", elastic_joint, {"amplitude": 0.01, "phase": 0.6}, 0.1),
     ("stiffening", elastic_joint, {"knee": 0.06}, 0.05),
@@ -38,7 +40,9 @@ CASES: list[tuple[str, Callable[[], Arm], dict[str, float], float]] = [
 @pytest.mark.parametrize(("effect", "machine", "truth", "accuracy"), CASES, ids=[case[0] for case in CASES])
 def test_an_effect_is_recovered_from_its_own_recordings(effect, machine, truth, accuracy):
     arm = machine()
-    hidden = arm.with_effect(effect, **truth).with_values({"link.inertia": 1.05 * arm.value("link.inertia")})
+    hidden = arm.with_effect(effect, **truth)
+    if "link.inertia" not in arm.fixed:
+        hidden = hidden.with_values({"link.inertia": 1.05 * arm.value("link.inertia")})
     runs = [simulate(hidden, input, duration=5.0, rate=200.0, seed=seed) for seed, input in enumerate(("square", "sweep"))]
     found = add(effect, arm, runs, jobs=1)
     assert found.error["final"] < 1.15
