@@ -159,7 +159,7 @@ def stacked(structures: Sequence[Structure]) -> Structure:
         channels = [structure.sensors[signal] for structure in structures]
         rows = np.array([(c.gain, c.offset, c.filter, c.position) for c in channels])
         values.setdefault("sensors", {})[signal] = Channel(channels[0].reading, channels[0].strain, *rows.T)
-    return Structure(elements=first.elements, **values)
+    return Structure(elements=first.elements, has_joint=first.has_joint, **values)
 
 
 @dataclass

@@ -10,7 +10,7 @@ from one_joint import elastic_joint, pendulum, servo
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
-from flexarm_env import Arm, InputError
+from flexarm_env import Arm, InputError, simulate
 from flexarm_env.machine import GRAVITY
 
 INTERVAL = 0.005
@@ -240,3 +240,72 @@ def test_what_limits_make_of_the_current_is_refused():
     table = {"drive": {"input": "position", **dict(servo().constants["drive"])}, "link": {"mass": 1, "centre": 1, "inertia": 1}}
     with pytest.raises(InputError, match=r"motor_current measures the motor's current, which .* do not give"):
         Arm.from_table(table | {"sensors": {"motor_current": {}}}, "servo").plant(INTERVAL)
+
+
+MACHINES = (pendulum(), elastic_joint(), servo(), pendulum(vertical=False).with_effect("fixture_compliance"))
+FRICTION = {"coulomb": {"torque": 0.01}, "load_friction": {"coefficient": 0.1}, "end_stop": {"stiffness": 5.0}}
+
+
+def rough(arm: Arm) -> Arm:
+    """Add friction, friction by load and stops."""
+    for name, values in FRICTION.items():
+        arm = arm.with_effect(name, **values)
+    return arm
+
+
+def steps(arm: Arm) -> np.ndarray:
+    """Four steps of a command of the machine's own size."""
+    return np.repeat(arm.constants["drive"]["limit"] * np.array([0.3, -0.5, 0.1, 0.4]), 40)
+
+
+@pytest.mark.parametrize("arm", MACHINES, ids=lambda arm: arm.name)
+def test_mirrored_commands_make_a_mirrored_motion(arm):
+    found = []
+    for sign in (1.0, -1.0):
+        plant = rough(arm).plant(INTERVAL)
+        plant.place()
+        found.append(sign * plant.replay(sign * steps(arm)))
+    assert np.abs(found[0] - found[1]).max() <= 1e-9 * np.abs(found[0]).max()
+
+
+@pytest.mark.parametrize("arm", MACHINES, ids=lambda arm: arm.name)
+def test_shorter_steps_make_the_same_motion(arm):
+    """The same commands, each held for two samples of half the length."""
+    whole, half = (rough(arm).plant(interval) for interval in (INTERVAL, INTERVAL / 2))
+    for plant in (whole, half):
+        plant.place()
+    coarse, fine = whole.replay(steps(arm)), half.replay(np.repeat(steps(arm), 2))[::2]
+    assert np.abs(coarse - fine).max() < 1e-4 * np.abs(fine).max()
+
+
+@pytest.mark.parametrize("arm", MACHINES, ids=lambda arm: arm.name)
+def test_uneven_samples_are_those_of_the_even_plant(arm):
+    even, uneven = (rough(arm).plant(INTERVAL) for _ in range(2))
+    for plant in (even, uneven):
+        plant.place()
+    commands = steps(arm)
+    found = uneven.replay(commands, np.full(len(commands), INTERVAL))
+    expected = even.replay(commands)
+    assert np.abs(found - expected).max() < 1e-6 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("arm", MACHINES, ids=lambda arm: arm.name)
+def test_a_machine_is_read_back_bit_for_bit(arm, tmp_path):
+    rough(arm).save(tmp_path / "arm.toml")
+    assert Arm.load(tmp_path / "arm.toml") == rough(arm)
+
+
+@pytest.mark.parametrize("arm", [servo(), elastic_joint().with_effect("stiffening")], ids=["servo", "spring"])
+def test_derivatives_are_refused_where_there_are_none(arm):
+    with pytest.raises(InputError, match=r"by which there are no derivatives: take differences"):
+        simulate(arm, "pulse", duration=0.1, rate=200.0, derivatives=["link.inertia"])
+
+
+def test_a_pendulum_has_derivatives():
+    arm, step = pendulum(), 1e-5
+    run, slopes = simulate(arm, "pulse", duration=1.5, rate=100.0, noise=False, derivatives=["link.mass", "link.inertia"])
+    for path in ("link.mass", "link.inertia"):
+        size = step * arm.value(path)
+        ends = [simulate(arm.with_values({path: arm.value(path) + s * size}), run, noise=False) for s in (1.0, -1.0)]
+        expected = (ends[0].signals["arm_angle"] - ends[1].signals["arm_angle"]) / (2.0 * size)
+        assert np.abs(slopes[path]["arm_angle"] - expected).max() < 1e-4 * np.abs(expected).max()
