@@ -394,7 +394,9 @@ def _sensors(s: Structure, model: LinearModel, coordinates: Coordinates) -> None
         if reading.current is not None:
             row[..., :size] += reading.current.position
             row[..., size:] += reading.current.speed
-        row *= np.asarray(channel.gain)[..., None]
+        # a filter behind a reading that jumps stores it without gain, so that the gain moves no rounding error of the motion
+        inner, outer = (1.0, channel.gain) if reading.jumps else (channel.gain, 1.0)
+        row *= np.asarray(inner)[..., None]
         model.output_from_input[..., i, ONE] = channel.offset
         if i not in filtered:
             model.output[..., i, : 2 * size] = row
@@ -402,18 +404,18 @@ def _sensors(s: Structure, model: LinearModel, coordinates: Coordinates) -> None
         place = before + filtered.index(i)
         if reading.acceleration is not None:
             # A filtered acceleration is linear in the state: the speed less the filtered speed, over the time constant.
-            rate = reading.acceleration * (np.asarray(channel.gain) / filters[i])[..., None]
+            rate = reading.acceleration * np.asarray(1.0 / filters[i])[..., None]
             row[..., size:] -= rate
-            model.output[..., i, size : 2 * size] = rate
+            model.output[..., i, size : 2 * size] = rate * np.asarray(outer)[..., None]
             model.settled[..., place, :] = row
         if reading.current is not None:
             model.settled[..., place, :] = row
-            model.extra_from_input[..., place, COMMAND] = channel.gain * reading.current.command / filters[i]
+            model.extra_from_input[..., place, COMMAND] = reading.current.command / filters[i]
             if reading.current.lagged:
-                model.extra[..., place, 0] = channel.gain / filters[i]
+                model.extra[..., place, 0] = 1.0 / filters[i]
         model.extra[..., place, place] = -1.0 / filters[i]
         model.extra_from_motion[..., place, :] = row / np.asarray(filters[i])[..., None]
-        model.output[..., i, 2 * size + place] = 1.0
+        model.output[..., i, 2 * size + place] = outer
 
 
 def _reading(signal: str, channel: Channel, coordinates: Coordinates) -> Reading:
