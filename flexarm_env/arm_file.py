@@ -117,11 +117,10 @@ def _constants(table: Mapping[str, Any]) -> tuple[str, dict[str, dict[str, float
     command = drive.pop("input", "current")
     if not isinstance(command, str) or command not in INPUTS:
         raise InputError(f"drive.input = {command!r}{did_you_mean(str(command), INPUTS)}")
-    given = {"drive": drive, "hub": _table(table, "hub", {} if "link" in table else None)}
+    constants = {"drive": _section("drive", drive, defaults_of("drive", command, table))}
+    given = {"hub": _table(table, "hub", {} if "link" in table else None)}
     given |= {section: _table(table, section) for section in ("beam", "link", "joint") if section in table}
-    constants = {
-        section: _section(section, dict(values), defaults_of(section, command, table)) for section, values in given.items()
-    }
+    constants |= {section: _section(section, values, defaults_of(section, command, table)) for section, values in given.items()}
     _check_drive(command, drive, constants["drive"])
     _check_bodies(constants)
     return command, constants

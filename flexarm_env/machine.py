@@ -71,8 +71,8 @@ def weight(constants: Constants) -> tuple[float, float]:
     Example:
         >>> link = {"mass": 0.5, "centre": 0.2, "tilt": math.pi / 2, "hangs_at": 0.0}
         >>> torque, uphill = weight({"link": link})
-        >>> round(torque, 5), round(uphill, 5)
-        (0.98066, 3.14159)
+        >>> round(torque, 4), round(uphill, 4)
+        (0.9807, 3.1416)
     """
     beam, link = constants.get("beam"), constants.get("link")
     if beam is not None:
