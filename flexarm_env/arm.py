@@ -160,9 +160,9 @@ class Arm(Shown):
 
         Args:
             need: "beam", "tip" (of a beam, or of a link with a length), "soft_gears" (a joint, or gears whose stiffness is
-                stated), "windup" (shown by the motor's speed, or by a servo, whose loop is closed around the motor), "motor" (with
-                constants of its own: any drive but torque), "motor_inertia", "hub_inertia" (or a beam or link), "supply" (a
-                voltage that is stated), the name of a signal, "strain" for any strain gage, or the drive's input.
+                stated), "windup" (shown by the motor's speed, or by a servo, which closes its loop around the motor), "motor"
+                (with constants of its own: any drive but torque), "motor_inertia", "hub_inertia" (or a beam or link), "supply"
+                (a voltage that is stated), the name of a signal, "strain" for any strain gage, or the drive's input.
 
         Example:
             >>> Arm.load("cu-rigid").has("beam"), Arm.load("thesis").has("strain")

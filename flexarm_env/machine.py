@@ -43,9 +43,7 @@ def structure_of_constants(constants: Constants, command: str) -> Structure:
         front_inertia=hub if joint else 0.0,
     )
     if beam:
-        structure.elements, structure.length = int(beam["elements"]), beam["length"]
-        structure.mass_per_length, structure.bending_stiffness = beam["mass_per_length"], beam["bending_stiffness"]
-        structure.tip_mass, structure.tip_inertia = beam["tip_mass"], beam["tip_inertia"]
+        _add_beam(structure, beam)
     if command == "position" and drive["enabled"]:
         _add_servo(structure, drive)
     if link:
@@ -55,6 +53,13 @@ def structure_of_constants(constants: Constants, command: str) -> Structure:
         structure.has_joint = True
         structure.gear_compliance, structure.gear_damping_time = 1.0 / joint["stiffness"], joint["damping"] / joint["stiffness"]
     return structure
+
+
+def _add_beam(structure: Structure, beam: Mapping[str, float]) -> None:
+    """Fix a beam to the hub."""
+    structure.elements, structure.length = int(beam["elements"]), beam["length"]
+    structure.mass_per_length, structure.bending_stiffness = beam["mass_per_length"], beam["bending_stiffness"]
+    structure.tip_mass, structure.tip_inertia = beam["tip_mass"], beam["tip_inertia"]
 
 
 def _add_servo(structure: Structure, drive: Mapping[str, float]) -> None:
