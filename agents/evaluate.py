@@ -13,10 +13,7 @@ from typing import Any
 import numpy as np
 from joblib import Parallel, delayed
 
-from agents.measures import MEASURES, measure
 from agents.report import table_of
-from agents.rollout import roll_out
-from agents.sets import FIRST_SEED, SETS
 from agents.statistics import mean_interval, paired_difference
 from flexarm_env import Arm, InputError, __version__
 from flexarm_env.controllers import CONTROLLERS, make_controller
@@ -24,6 +21,9 @@ from flexarm_env.errors import did_you_mean
 from flexarm_env.files import write_whole
 from flexarm_env.tasks import TASKS
 from flexarm_env.terminal.provenance import commit
+from flexarm_env.trials.measures import MEASURES, measure
+from flexarm_env.trials.rollout import roll_out
+from flexarm_env.trials.sets import FIRST_SEED, SETS
 
 FOLDER = Path(__file__).resolve().parent.parent / "results" / "baselines"
 REFERENCE = "pd"

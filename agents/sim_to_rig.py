@@ -24,16 +24,16 @@ from agents.evaluate import RATE
 from agents.learning.artefact import Artefact
 from agents.learning.options import Plan
 from agents.learning.plan_file import read_plan
-from agents.measures import MEASURES, measure
 from agents.rig import drive
 from agents.rig_report import report_of, verdict_of
-from agents.sets import FIRST_SEED
 from agents.train import place_of
 from flexarm_env import Arm, InputError, Recording, __version__, diagnose
 from flexarm_env.controllers import make_controller
 from flexarm_env.files import write_whole
 from flexarm_env.tasks import TASKS
 from flexarm_env.terminal.provenance import commit
+from flexarm_env.trials.measures import MEASURES, measure
+from flexarm_env.trials.sets import FIRST_SEED
 from tests.rig import write_case
 
 PROJECT = Path(__file__).resolve().parent.parent

@@ -13,12 +13,12 @@ import numpy as np
 from agents.goals import GOALS
 from agents.learning.options import Plan
 from agents.learning.plan_file import read_plan, read_table
-from agents.measures import measure
-from agents.rollout import roll_out
-from agents.sets import ArmSet
 from agents.statistics import interquartile_mean
 from flexarm_env.errors import InputError
 from flexarm_env.tasks import TASKS
+from flexarm_env.trials.measures import measure
+from flexarm_env.trials.rollout import roll_out
+from flexarm_env.trials.sets import ArmSet
 
 #: Searched options: path in a plan, lowest and highest value; all on a logarithmic scale.
 RANGES = {

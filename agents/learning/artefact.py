@@ -99,7 +99,7 @@ def acting_weights(policy: BasePolicy) -> dict[str, torch.Tensor]:
 
 
 class LearnedPolicy:
-    """Drives arms, one or many: an Agent of agents/rollout.py.
+    """Drives arms, one or many: an Agent of flexarm_env/trials/rollout.py.
 
     Args:
         policy: of Stable-Baselines3 or sb3-contrib, its critic untrained.

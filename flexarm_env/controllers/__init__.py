@@ -10,7 +10,9 @@ from flexarm_env.arm import Arm
 from flexarm_env.controllers.base import Controller
 from flexarm_env.controllers.filtered import FilteredVibrationSuppression
 from flexarm_env.controllers.lqg import LQG
+from flexarm_env.controllers.mpc import MPC
 from flexarm_env.controllers.pd import PD, RateLimitedPD
+from flexarm_env.controllers.pid import CompensatedPID
 from flexarm_env.controllers.scheduled import ScheduledLQG
 from flexarm_env.controllers.shaping import ShapedPD
 from flexarm_env.controllers.vibration import TORQUE_PER_STRAIN, VibrationSuppression
@@ -56,6 +58,8 @@ CONTROLLERS: dict[str, Recipe] = {
     "shaped_zvd": Recipe(ShapedPD, {"shaper": "zvd"}, "PD, target shaped for zero vibration and derivative"),
     "lqg": Recipe(LQG, {}, "Kalman filter, linear-quadratic regulator, estimated friction opposed"),
     "lqg_scheduled": Recipe(ScheduledLQG, {}, "LQG with gains by the payload that the stuck arm's frequency shows"),
+    "pid_compensated": Recipe(CompensatedPID, {}, "PID about a quintic reference, feedforward, friction compensated"),
+    "mpc": Recipe(MPC, {}, "linear MPC with the filter, friction and payload of lqg_scheduled"),
 }
 
 

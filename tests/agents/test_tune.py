@@ -25,7 +25,7 @@ def test_what_is_searched_are_options_and_within_their_bounds() -> None:
 
 def test_the_judging_arms_are_nobody_else_s() -> None:
     from agents.learning.episodes import SEEDS_EACH
-    from agents.sets import FIRST_SEED
+    from flexarm_env.trials.sets import FIRST_SEED
 
     assert JUDGES_SEED + JUDGES_COUNT <= FIRST_SEED
     assert 50 * SEEDS_EACH < JUDGES_SEED  # of dozens of training seeds none comes there

@@ -12,6 +12,12 @@ from flexarm_env.arm import Arm
 from flexarm_env.controllers import CONTROLLERS, make_controller
 from flexarm_env.errors import InputError
 
+pytest.importorskip("daqp")
+
+#: Laws that work without a gage, and those that weigh the payload by it.
+WITHOUT_GAGE = ("pd", "pd_rate_limited", "shaped_zv", "shaped_zvd", "lqg", "pid_compensated")
+WEIGH = ("lqg_scheduled", "mpc")
+
 ARMS, SAMPLES = 7, 60
 
 
@@ -88,7 +94,7 @@ def test_signals_are_found_by_name(thesis, name):
 @pytest.mark.parametrize("signal", ["arm_angle", "motor_speed", "strain"])
 def test_a_missing_signal_is_said_in_one_line(thesis, name, signal):
     less = replace(thesis, sensors={s: table for s, table in thesis.sensors.items() if not s.startswith(signal)})
-    if signal == "strain" and name in ("pd", "pd_rate_limited", "shaped_zv", "shaped_zvd", "lqg"):
+    if signal == "strain" and name.removesuffix("_tuned") in WITHOUT_GAGE:
         make_controller(name, less, INTERVAL).reset()
         return
     with pytest.raises(InputError, match=signal) as error:
@@ -104,7 +110,7 @@ def test_other_arms_are_driven_or_refused(name, shipped):
     lacks = None
     if "motor_speed" not in arm.signals:
         lacks = "motor_speed"
-    elif not gages and name.startswith(("vibration", "lqg_scheduled")):
+    elif not gages and name.startswith(("vibration", *WEIGH)):
         lacks = "strain"
     elif not arm.has("beam") and name.startswith("shaped"):
         lacks = "beam"
@@ -128,7 +134,16 @@ def test_names_and_options_are_checked(thesis):
 
 @pytest.mark.parametrize(
     ("name", "options"),
-    [("pd_rate_limited", {"rate": 0.0}), ("vibration_dual", {"delay": -1.0}), ("shaped_zv", {"mode": "free"})],
+    [
+        ("pd_rate_limited", {"rate": 0.0}),
+        ("vibration_dual", {"delay": -1.0}),
+        ("shaped_zv", {"mode": "free"}),
+        ("lqg", {"design": {"angel": 0.1}}),
+        ("lqg", {"design": {"angle": 0.0}}),
+        ("lqg", {"design": 3.0}),
+        ("pid_compensated", {"design": {"bandwidth": float("nan")}}),
+        ("mpc", {"design": {"horizon": "long"}}),
+    ],
 )
 def test_bad_options_are_refused(thesis, name, options):
     with pytest.raises(InputError):
