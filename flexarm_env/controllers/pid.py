@@ -31,8 +31,8 @@ class PIDDesign(Design):
 
     speed: float = 4.0
     acceleration: float = 12.0
-    bandwidth: float = 10.0
-    damping: float = 1.0
+    bandwidth: float = 4.0
+    damping: float = 0.7
     integral: float = 0.2
     friction: float = 1.0
     slide: float = 5.0
@@ -65,7 +65,7 @@ class CompensatedPID(Controller):
         beam = structure.mass_per_length * structure.length**3 / 3.0
         tip = (structure.tip_mass + structure.payload) * structure.length**2 + structure.tip_inertia
         gears = structure.gear_ratio
-        #: Inertia of the rigid arm [kg m²] and its viscous friction [Nms], with the motor's braking, over the hub's torque per command.
+        #: Inertia of the rigid arm [kg m²] and viscous friction [Nms], over the hub's torque per command.
         self.inertia = (structure.hub_inertia + gears**2 * structure.motor_inertia + beam + tip) / self.hub_torque_per_command
         # the voltage that the turning motor induces drives against its command
         induced = gears * structure.torque_constant if arm.input == "voltage" else 0.0
