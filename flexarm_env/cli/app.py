@@ -237,6 +237,9 @@ def tune(
     ],
     arm: ArmName = "thesis",
     effects: Effects = None,
+    start: Annotated[
+        Path | None, typer.Option(metavar="FILE.toml", help="A tuned controller to start from, such as one for the nominal arm.")
+    ] = None,
     save: Annotated[Path | None, typer.Option(metavar="FILE.toml", help="Write the tuned controller.")] = None,
     trials: Annotated[int, typer.Option(min=1, help="Values to try.")] = 80,
     arms: Annotated[int, typer.Option(min=1, max=1000, help="Arms in each cell of a trial.")] = 12,
@@ -247,12 +250,12 @@ def tune(
     json: Json = None,
 ) -> None:
     """Search for the options of a controller on an arm, with robustness among the objectives, and measure its margins."""
-    arguments.check(json, save, journal, specs=effects)
+    arguments.check(json, save, journal, read=[start] if start else [], specs=effects)
     from flexarm_env.cli import tuning
     from flexarm_env.tuning.search import Budget
 
     model = arguments.load_arm(arm, effects)
-    tuning.run(controller, model, arm, Budget(trials, arms, seed), (save, journal, json))
+    tuning.run(controller, model, arm, Budget(trials, arms, seed), start, (save, journal, json))
 
 
 @app.command()

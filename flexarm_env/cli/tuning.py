@@ -14,7 +14,7 @@ from flexarm_env.cli.answers import hand_out
 from flexarm_env.controllers.tuned import TunedController
 from flexarm_env.terminal import tables
 from flexarm_env.terminal.progress import progress
-from flexarm_env.tuning.search import Budget, measured_margins, own_values, tune
+from flexarm_env.tuning.search import Budget, first_values, measured_margins, tune
 from flexarm_env.tuning.spaces import nested, space_of
 
 MARGINS = {
@@ -26,7 +26,14 @@ MARGINS = {
 }
 
 
-def run(controller: str, arm: Arm, named: str, budget: Budget, places: tuple[Path | None, Path | None, Path | None]) -> None:
+def run(
+    controller: str,
+    arm: Arm,
+    named: str,
+    budget: Budget,
+    start: Path | None,
+    places: tuple[Path | None, Path | None, Path | None],
+) -> None:
     """Search, write the controller's file, and print what was found.
 
     Args:
@@ -34,19 +41,21 @@ def run(controller: str, arm: Arm, named: str, budget: Budget, places: tuple[Pat
         arm: on which it is tuned.
         named: the arm, as the user gave it.
         budget: of the search.
+        start: file of the controller whose values are tried first; the law's own by default.
         places: for the file, for the journal, for the JSON.
     """
     save, journal, json = places
+    begun = None if start is None else TunedController.load(start)
+    before = first_values(controller, arm, space_of(controller), begun)
     with progress(f"tuning {controller}") as move:
 
         def report(done: int, least: float) -> None:
             if move is not None:
                 move(done / budget.trials, f"{done} of {budget.trials}, {least:.3f}")
 
-        found = tune(controller, arm, budget, journal, report)
+        found = tune(controller, arm, budget, journal, report, begun)
     if save is not None:
         found.save(save)
-    before = own_values(controller, arm, space_of(controller))
     old = measured_margins(controller, arm, nested(before))
     content = {"controller": controller, "options": found.options, "search": found.search, "margins": found.margins}
     hand_out("tune", named, [], budget.seed, json, content | {"margins_before": old}, _parts(found, before, old))

@@ -53,6 +53,7 @@ def tune(
     budget: Budget = Budget(),
     journal: Path | None = None,
     report: Callable[[int, float], None] | None = None,
+    start: TunedController | None = None,
 ) -> TunedController:
     """Search for the options of a law that serve an arm best, and measure the loop's margins.
 
@@ -62,9 +63,10 @@ def tune(
         budget: of the search.
         journal: file in which trials outlast a stop.
         report: is called after each trial with their number and the least score.
+        start: controller of the same law, whose values are tried first; the law's own by default.
 
     Raises:
-        InputError: for an unknown law, or an arm that it cannot drive.
+        InputError: for an unknown law, a start of another one, or an arm that the law cannot drive.
     """
     space = space_of(controller)
     law(controller, arm, {})(1.0 / CONTROL_RATE)  # refuses an arm that lacks a signal before the search
@@ -79,9 +81,9 @@ def tune(
             return IMPOSSIBLE
         return found if measured_margins(controller, arm, options) else found + UNSTABLE
 
-    digest = hashlib.sha256(arm_text(arm).encode()).hexdigest()[:12]
+    first = first_values(controller, arm, space, start)
+    digest = hashlib.sha256(f"{arm_text(arm)} {first}".encode()).hexdigest()[:12]
     study = Study(f"{controller} {digest} {budget.arms} {budget.seed}", space, journal)
-    first = own_values(controller, arm, space)
     study.run(budget.trials, budget.seed, objective, first, report)
     values, least = study.best()
     options = nested({name: float(f"{value:.4g}") for name, value in values.items()})
@@ -108,21 +110,18 @@ def law(controller: str, arm: Arm, options: Mapping[str, Any]) -> Callable[[floa
     return lambda interval: recipe.build(arm, interval, **{**recipe.options, **on_drive(arm, options)})
 
 
-def own_values(controller: str, arm: Arm, space: Mapping[str, Range]) -> dict[str, float]:
-    """Look up the values that a law has by itself, moved into the search's ranges."""
-    made = law(controller, arm, {})(1.0 / CONTROL_RATE)
-    recipe = CONTROLLERS[controller]
+def first_values(controller: str, arm: Arm, space: Mapping[str, Range], start: TunedController | None = None) -> dict[str, float]:
+    """Look up the values of a start, or those that a law has by itself, moved into the search's ranges.
+
+    Raises:
+        InputError: for a start of another law.
+    """
+    if start is not None and start.controller != controller:
+        raise InputError(f"a search of {controller} cannot start from {start.controller}; name a file of {controller}")
+    made = law(controller, arm, start.options if start is not None else {})(1.0 / CONTROL_RATE)
     found = {}
     for path, ends in space.items():
-        _, _, name = path.rpartition(".")
-        found[path] = min(max(_own_value(made, recipe, path, name, arm), ends.low), ends.high)
+        table, _, name = path.rpartition(".")
+        value = getattr(made.design if table else made, name) / on_drive(arm, {name: 1.0})[name]  # type: ignore[attr-defined]
+        found[path] = min(max(float(value), ends.low), ends.high)
     return found
-
-
-def _own_value(made: Controller, recipe: Any, path: str, name: str, arm: Arm) -> float:
-    if path.startswith("design."):
-        return float(getattr(made.design, name))  # type: ignore[attr-defined]
-    if name in recipe.options:
-        return float(recipe.options[name])
-    factor = on_drive(arm, {name: 1.0})[name]
-    return float(getattr(made, name)) / factor

@@ -11,7 +11,7 @@ from flexarm_env.controllers import make_controller
 from flexarm_env.controllers.tuned import TunedController, on_drive
 from flexarm_env.errors import InputError
 from flexarm_env.tuning import judge
-from flexarm_env.tuning.search import Budget, own_values, tune
+from flexarm_env.tuning.search import Budget, first_values, tune
 from flexarm_env.tuning.spaces import SPACES, Range, nested
 from flexarm_env.tuning.study import Study
 
@@ -72,14 +72,14 @@ def test_a_law_stands_at_both_ends_of_its_ranges(name) -> None:
     arm = Arm.load("thesis")
     for end in (0, 1):
         make_controller(name, arm, 0.005, **on_drive(arm, nested({path: each[end] for path, each in SPACES[name].items()})))
-    own = own_values(name, arm, SPACES[name])
+    own = first_values(name, arm, SPACES[name])
     assert all(SPACES[name][path].low <= value <= SPACES[name][path].high for path, value in own.items())
 
 
 @pytest.mark.parametrize("arm", ["thesis", "cu-rigid"])
-def test_a_law_s_own_values_make_the_law(arm) -> None:
+def test_a_law_s_first_values_make_the_law(arm) -> None:
     model = Arm.load(arm)
-    values = own_values("pd", model, SPACES["pd"])
+    values = first_values("pd", model, SPACES["pd"])
     made, own = make_controller("pd", model, 0.005, **on_drive(model, values)), make_controller("pd", model, 0.005)
     assert made.proportional == pytest.approx(own.proportional)
     assert made.derivative == pytest.approx(own.derivative)
@@ -121,3 +121,15 @@ def test_a_set_that_an_arm_cannot_have_is_left_out_of_its_score() -> None:
     assert ("slew", "randomised") in cells
     assert ("slew", "constants_30") not in cells  # so far apart, some of its arms are built in another way
     assert judge.cells_of(Arm.load("thesis"), 12, 0) == list(judge.CELLS)
+
+
+def test_a_search_starts_from_a_tuned_controller(monkeypatch) -> None:
+    monkeypatch.setattr(judge, "CELLS", judge.CELLS[:1])
+    thesis = Arm.load("thesis")
+    start = TunedController("vibration_dual", "thesis", "0.1.0", {"high_gain": -0.5, "proportional": 3.0})
+    values = first_values("vibration_dual", thesis, SPACES["vibration_dual"], start)
+    assert (values["high_gain"], values["proportional"], values["low_gain"]) == (-0.5, 3.0, 1.0)
+    found = tune("vibration_dual", thesis, Budget(1, 2), start=start)
+    assert found.options == pytest.approx(values)
+    with pytest.raises(InputError, match="cannot start from vibration_dual"):
+        tune("pd", thesis, Budget(1, 2), start=start)
