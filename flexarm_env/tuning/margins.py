@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 #: Size of the impulse over the drive's limit, or in A or V where there is none: too small to meet a limit.
 IMPULSE = 1e-3
 #: The response has ended where its largest value in a stretch of samples is below this share of its largest ever.
-ENDED, STRETCH = 1e-7, 400
+ENDED, STRETCH = 1e-5, 400
 #: It does not end where its largest value in an age of samples is above this share of that in the age before, or after the last.
 LASTING, AGE, LONGEST = 0.95, 2000, 40_000
 #: Effects without which an arm's friction is linear.

@@ -50,7 +50,7 @@ SPACES: Mapping[str, Mapping[str, Range]] = {
         "design.acceleration": Range(3.0, 80.0),
         "design.bandwidth": Range(2.0, 40.0),
         "design.damping": Range(0.4, 3.0),
-        "design.integral": Range(0.01, 1.0),
+        "design.integral": Range(0.05, 1.0),
         "design.friction": Range(0.0, 1.2, False),
         "design.slide": Range(0.2, 50.0),
         "design.width": Range(0.03, 5.0),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 
 pytest.importorskip("optuna")
@@ -83,6 +85,13 @@ def test_a_law_s_first_values_make_the_law(arm) -> None:
     made, own = make_controller("pd", model, 0.005, **on_drive(model, values)), make_controller("pd", model, 0.005)
     assert made.proportional == pytest.approx(own.proportional)
     assert made.derivative == pytest.approx(own.derivative)
+
+
+def test_without_optuna_a_search_is_refused_in_one_line(monkeypatch) -> None:
+    monkeypatch.setitem(sys.modules, "optuna", None)
+    with pytest.raises(InputError, match=r"flexarm-env\[control\]") as error:
+        Study("bowl", SPACE)
+    assert "\n" not in str(error.value)
 
 
 def test_tuning_improves_the_score_and_writes_the_budget(monkeypatch, tmp_path) -> None:
