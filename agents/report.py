@@ -15,8 +15,9 @@ COLUMNS = (
     ("peak_current", "peak [A]", 1),
     ("energy", "energy [A² s]", 1),
 )
-#: Controllers and sets of the short table: one of each kind, the best of its kind.
-SHORT, SHORT_SETS = ("pd", "vibration_dual", "shaped_zvd", "lqg", "lqg_scheduled"), ("nominal", "randomised")
+#: Controllers and sets of the short table: of the thesis, the best of the others, and some as tuned.
+SHORT = ("pd", "vibration_dual", "lqg_scheduled", "vibration_dual_tuned", "pid_compensated_tuned", "lqg_tuned", "mpc_tuned")
+SHORT_SETS = ("nominal", "randomised")
 
 
 def table_of(result: Mapping[str, Any]) -> str:
