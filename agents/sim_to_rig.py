@@ -1,8 +1,8 @@
 """Compare controllers for a diagnosed arm with those for the nominal arm on the machine: python -m agents.sim_to_rig.
 
 The machine is the independent simulator of tests/rig with something hidden. Policies are trained, and classical
-controllers made, for the nominal arm, the nominal arm randomised (policies only) and the arm that `diagnose` corrected
-from three recordings of the machine; all then drive the machine.
+controllers made and tuned, for the nominal arm, the nominal arm randomised (policies only) and the arm that `diagnose`
+corrected from three recordings of the machine; all then drive the machine.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from agents.evaluate import RATE
 from agents.learning.artefact import Artefact
 from agents.learning.options import Plan
 from agents.learning.plan_file import read_plan
-from agents.measures import MEASURES, measure
 from agents.rig import drive
+from agents.rig_controllers import NOMINAL, RETUNED, controllers_of, retune, tuned_place
 from agents.rig_report import report_of, verdict_of
-from agents.sets import FIRST_SEED
 from agents.train import place_of
 from flexarm_env import Arm, InputError, Recording, __version__, diagnose
-from flexarm_env.controllers import make_controller
 from flexarm_env.files import write_whole
 from flexarm_env.tasks import TASKS
 from flexarm_env.terminal.provenance import commit
+from flexarm_env.trials.measures import MEASURES, measure
+from flexarm_env.trials.sets import FIRST_SEED
 from tests.rig import write_case
 
 PROJECT = Path(__file__).resolve().parent.parent
@@ -47,8 +47,6 @@ CASES: Mapping[str, tuple[Mapping[str, float], str]] = {
 }
 #: Training plan of each kind of policy; the corrected ones use the nominal plan on another arm.
 PLANS = {"nominal": "nominal", "randomised": "randomised", "corrected": "nominal"}
-NOMINAL = "thesis-fem"
-CLASSICAL = ("pd", "vibration_dual", "shaped_zvd", "lqg")
 
 
 def correct(case: str, folder: Path, jobs: int) -> None:
@@ -85,6 +83,11 @@ def make(folder: Path, jobs: int, say: Callable[[str], None]) -> None:
         if not (folder / "arms" / f"{case}.toml").is_file():
             say(f"diagnosing {case}")
             correct(case, folder / "arms", jobs)
+    for law in RETUNED:
+        for kind, arm in [("nominal", Arm.load(NOMINAL)), *((c, Arm.load(folder / "arms" / f"{c}.toml")) for c in CASES)]:
+            if not tuned_place(folder, law, kind).is_file():
+                say(f"tuning {law} on {kind}")
+                retune(law, arm, tuned_place(folder, law, kind))
     most = max(plan_of(kind, case, folder)[1].seeds for kind, case in wanted())
     # seed by seed, so that a stopped run leaves equally many of each kind
     for seed in range(most):
@@ -106,8 +109,7 @@ def evaluate(folder: Path, case: str, count: int, say: Callable[[str], None]) ->
     agents: dict[str, list[Any]] = {}
     for kind in PLANS:
         agents[f"policy, {kind}"] = [Artefact.load(path).agent() for path in policies_of(folder, kind, case)]
-    arms = {"nominal": Arm.load(NOMINAL), "corrected": Arm.load(folder / "arms" / f"{case}.toml")}
-    agents |= {f"{name}, {kind}": [make_controller(name, arm, 1.0 / RATE)] for name in CLASSICAL for kind, arm in arms.items()}
+    agents |= controllers_of(folder, case)
     found = {}
     for name, runs in agents.items():
         say(f"{case}: {name}")

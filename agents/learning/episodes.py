@@ -15,9 +15,9 @@ from stable_baselines3.common.vec_env import VecEnv
 from agents.learning.interface import PolicyInterface, squeezed
 from agents.learning.options import ArmsOptions, Plan
 from agents.learning.reward import TrainingReward
-from agents.sets import FIRST_SEED, ArmSet
 from flexarm_env.arm import Arm
 from flexarm_env.tasks import TASKS, Task
+from flexarm_env.trials.sets import FIRST_SEED, ArmSet
 from flexarm_env.vector_env import FlexArmVectorEnv
 
 Array = NDArray[Any]
@@ -144,6 +144,6 @@ def actions_each(task: Task, repeat: int) -> int:
 
 
 def training_set(options: ArmsOptions) -> ArmSet:
-    """Make the set of arms for training; those of agents/sets.py are for evaluation."""
+    """Make the set of arms for training; those of flexarm_env/trials/sets.py are for evaluation."""
     disturb = {"tap_rate": options.tap_rate, "dropout_rate": options.dropout_rate}
     return ArmSet("training", "arms to train on", options.payload, options.constants, options.friction, disturb)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from flexarm_env.arm import Arm
 
-#: Seed of the first arm of a set; training uses seeds below it.
+#: Seed of the first arm of a set in published figures; training, searches and development use seeds below it.
 FIRST_SEED = 1_000_000_000
+#: The same of the arms on which choices of design are judged, and of those on which a search judges its trials.
+DEVELOPMENT_SEED, SEARCH_SEED = 800_000_000, 900_000_000
 FRICTION = {"viscous": "coefficient", "coulomb": "torque", "stiction": "extra"}
 CONSTANTS = ("drive.torque_constant", "hub.inertia", "beam.mass_per_length", "beam.bending_stiffness")
 PAYLOAD = (0.0, 0.3)
@@ -26,6 +28,9 @@ class ArmSet:
         constants: share by which torque constant, inertia, mass and stiffness differ.
         friction: share by which the friction that the arm has differs.
         disturb: taps and drop-outs.
+        effects: that every machine has and the nominal arm lacks: {"input_delay": {"delay": 0.005}}.
+        rate_share: share of the usual control rate.
+        lost: signals that read 0 throughout, as from a broken wire.
     """
 
     name: str
@@ -34,6 +39,15 @@ class ArmSet:
     constants: float = 0.0
     friction: float = 0.0
     disturb: Mapping[str, float] = field(default_factory=dict)
+    effects: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    rate_share: float = 1.0
+    lost: tuple[str, ...] = ()
+
+    def machine(self, arm: Arm) -> Arm:
+        """Add the set's effects to the nominal arm."""
+        for name, values in self.effects.items():
+            arm = arm.with_effect(name, **values)
+        return arm
 
     def arguments(self, arm: Arm) -> dict[str, Any]:
         """Make the arguments of an environment with arms drawn from the set."""
@@ -58,5 +72,28 @@ SETS = {
             "taps on the hub, one a second, up to 0.5 Nm for 20 ms; sensors that drop out for 50 ms, two a second",
             disturb={"tap_rate": 1.0, "tap_torque": 0.5, "tap_time": 0.02, "dropout_rate": 2.0, "dropout_time": 0.05},
         ),
+    )
+}
+
+RANDOMISED = SETS["randomised"]
+#: The randomised arms, each set with one thing more that neither controllers nor policies have been told, but for the rate.
+ROBUSTNESS = {
+    found.name: found
+    for found in (
+        RANDOMISED,
+        *(
+            replace(
+                RANDOMISED,
+                name=f"delay_{1000.0 * delay:g}ms",
+                meaning=f"commands late by {1000.0 * delay:g} ms",
+                effects={"input_delay": {"delay": delay}},
+            )
+            for delay in (0.0025, 0.005, 0.01)
+        ),
+        replace(RANDOMISED, name="constants_30", meaning="constants and friction ±30 %", constants=0.3, friction=0.3),
+        replace(RANDOMISED, name="backlash", meaning="play of 0.03 rad at the motor", effects={"backlash": {"gap": 0.03}}),
+        replace(RANDOMISED, name="half_rate", meaning="half the control rate", rate_share=0.5),
+        replace(RANDOMISED, name="gage_lost", meaning="the gage at the base reads 0", lost=("strain_base",)),
+        replace(RANDOMISED, name="tach_lost", meaning="the tachometer reads 0", lost=("motor_speed",)),
     )
 }
