@@ -28,7 +28,7 @@ LAYERS = (
     {"arm", "arm_file", "plant", "effects", "sensors", "control", "linear", "recordings", "thesis_drive"},
     {"experiments"},
     {"identify", "controllers", "tasks", "render", "env"},
-    {"vector_env", "sb3", "pictures", "registration"},
+    {"vector_env", "sb3", "wrappers", "pictures", "registration"},
     {"terminal"},
     {"lab", "demo", "thesis"},
     {"cli", "__main__"},

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from agents.learning.options import InterfaceOptions
 from flexarm_env.arm import Arm
 from flexarm_env.controllers import make_controller
 from flexarm_env.controllers.estimator import Estimator, row_dot
 from flexarm_env.controllers.loads import KnownLoads
 from flexarm_env.controllers.lqg import LQG
 from flexarm_env.controllers.payload import PayloadEstimator
+from flexarm_env.wrappers.options import InterfaceOptions
 
 Floats = NDArray[np.float64]
 
@@ -27,7 +27,7 @@ SPREAD = 3.0
 PAYLOAD_SCALE = 0.15
 
 
-def squeezed(value: Floats, fine: float) -> Floats:
+def squeezed(value: Floats, fine: float | Floats) -> Floats:
     """Compute asinh(value / fine) over the common spread."""
     squeezed: Floats = np.arcsinh(value / fine) / SPREAD
     return squeezed
