@@ -12,7 +12,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 export MPLBACKEND ?= Agg
 
-.PHONY: help demo thesis test lint bench baselines policies train results docs clean clean-cache
+.PHONY: help demo thesis test lint bench tune baselines robustness policies train results docs clean clean-cache
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 22
@@ -34,9 +34,15 @@ lint: $(DEV) ## check style, format and types
 bench: $(DEV) ## measure speed and accuracy
 	$(BIN)/python -m benchmarks
 
+tune: $(DEV) ## tune the control laws again, into configs/controllers/; half an hour
+	$(BIN)/python -m agents.tune pd vibration_dual shaped_zvd lqg lqg_scheduled pid_compensated mpc
+
 baselines: $(DEV) ## evaluate all controllers and film two of them, into results/baselines/
 	$(BIN)/python -m agents.evaluate
 	$(BIN)/python -m agents.film
+
+robustness: $(DEV) ## compare controllers and policies on other machines, into results/robustness/
+	$(BIN)/python -m agents.robustness
 
 policies: $(DEV) ## compare the stored policies with all controllers, into results/policies/
 	$(BIN)/python -m agents.compare
@@ -47,7 +53,7 @@ train: $(DEV) ## train again what is not in results/: delete policies first; hou
 	$(BIN)/python -m agents.train configs/agents/*.toml
 	$(BIN)/python -m agents.sim_to_rig --make
 
-results: demo thesis baselines policies bench ## make again what results/ holds
+results: demo thesis baselines robustness policies bench ## make again what results/ holds
 
 docs: $(DEV) ## run the snippets in the documentation
 	$(BIN)/python -m pytest -m "slow or not slow" tests/test_docs.py tests/test_docs_numbers.py

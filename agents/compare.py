@@ -18,15 +18,15 @@ from agents.curves import draw_curves
 from agents.evaluate import RATE, evaluate_controller
 from agents.goals import THESIS, cell_of, verdicts
 from agents.learning.artefact import Artefact
-from agents.measures import MEASURES, measure
-from agents.rollout import roll_out
-from agents.sets import FIRST_SEED, SETS
 from agents.train import FOLDER
 from flexarm_env import Arm, InputError, __version__
 from flexarm_env.controllers import CONTROLLERS
 from flexarm_env.files import write_whole
 from flexarm_env.tasks import TASKS
 from flexarm_env.terminal.provenance import commit
+from flexarm_env.trials.measures import MEASURES, measure
+from flexarm_env.trials.rollout import roll_out
+from flexarm_env.trials.sets import FIRST_SEED, SETS
 
 
 def find_policies(folder: Path) -> dict[str, list[Path]]:

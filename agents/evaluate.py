@@ -13,10 +13,7 @@ from typing import Any
 import numpy as np
 from joblib import Parallel, delayed
 
-from agents.measures import MEASURES, measure
 from agents.report import table_of
-from agents.rollout import roll_out
-from agents.sets import FIRST_SEED, SETS
 from agents.statistics import mean_interval, paired_difference
 from flexarm_env import Arm, InputError, __version__
 from flexarm_env.controllers import CONTROLLERS, make_controller
@@ -24,23 +21,30 @@ from flexarm_env.errors import did_you_mean
 from flexarm_env.files import write_whole
 from flexarm_env.tasks import TASKS
 from flexarm_env.terminal.provenance import commit
+from flexarm_env.trials.measures import MEASURES, measure
+from flexarm_env.trials.rollout import roll_out
+from flexarm_env.trials.score import worst_tenth
+from flexarm_env.trials.sets import DEVELOPMENT_SEED, FIRST_SEED, ROBUSTNESS, SETS
 
 FOLDER = Path(__file__).resolve().parent.parent / "results" / "baselines"
 REFERENCE = "pd"
+EVERY_SET = SETS | ROBUSTNESS
 RATE = 200.0
 
 
-def evaluate_controller(name: str, task: str, arms: str, arm: str, count: int) -> dict[str, np.ndarray]:
+def evaluate_controller(
+    name: str, task: str, arms: str, arm: str, count: int, first_seed: int = FIRST_SEED
+) -> dict[str, np.ndarray]:
     """Evaluate a controller designed on the nominal arm: each measure (arms,)."""
-    nominal = Arm.load(arm)
-    controller = make_controller(name, nominal, 1.0 / RATE)
-    return measure(roll_out(controller, TASKS[task], nominal, SETS[arms], count, RATE), TASKS[task])
+    nominal, drawn = Arm.load(arm), EVERY_SET[arms]
+    controller = make_controller(name, nominal, 1.0 / (RATE * drawn.rate_share))
+    return measure(roll_out(controller, TASKS[task], nominal, drawn, count, RATE, first_seed), TASKS[task])
 
 
-def evaluate(names: Sequence[str], arm: str, count: int, jobs: int) -> dict[str, Any]:
+def evaluate(names: Sequence[str], arm: str, count: int, jobs: int, first_seed: int = FIRST_SEED) -> dict[str, Any]:
     """Evaluate controllers on all tasks and sets: each measure's mean and interval, and its difference from PD's."""
     cells = [(task, arms, name) for task in TASKS for arms in SETS for name in names]
-    tasks = (delayed(evaluate_controller)(name, task, arms, arm, count) for task, arms, name in cells)
+    tasks = (delayed(evaluate_controller)(name, task, arms, arm, count, first_seed) for task, arms, name in cells)
     found: dict[tuple[str, str, str], dict[str, np.ndarray]] = {}
     began = time.perf_counter()
     for cell, values in zip(cells, Parallel(n_jobs=jobs, return_as="generator")(tasks), strict=True):
@@ -56,7 +60,7 @@ def _cell(found: Mapping[tuple[str, str, str], Mapping[str, np.ndarray]], task: 
     reference = found.get((task, arms, REFERENCE))
     for key, values in found[task, arms, name].items():
         mean, low, high = mean_interval(values)
-        cell[key] = {"mean": mean, "low": low, "high": high}
+        cell[key] = {"mean": mean, "low": low, "high": high, "worst_tenth": float(worst_tenth(values))}
         if reference is not None and name != REFERENCE:
             mean, low, high = paired_difference(values, reference[key])
             cell[key]["less_than_pd"] = {"mean": -mean, "low": -high, "high": -low}
@@ -70,6 +74,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--arm", default="thesis", help="name or file of the arm; thesis by default")
     parser.add_argument("--count", type=int, default=100, help="arms in each set; 100 by default")
     parser.add_argument("--jobs", type=int, default=2, help="processes; 2 by default")
+    parser.add_argument(
+        "--development", action="store_true", help="arms for choices of design, other ones than those of published figures"
+    )
     parser.add_argument("--save", type=Path, default=FOLDER, help="folder of the results; results/baselines by default")
     asked = parser.parse_args(arguments)
     try:
@@ -83,12 +90,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(error, file=sys.stderr)
         return 2
     began = time.perf_counter()
-    cells = evaluate(asked.controllers, asked.arm, asked.count, asked.jobs)
+    first_seed = DEVELOPMENT_SEED if asked.development else FIRST_SEED
+    cells = evaluate(asked.controllers, asked.arm, asked.count, asked.jobs, first_seed)
     result = {
-        "command": f"python -m agents.evaluate --arm {asked.arm} --count {asked.count}",
+        "command": f"python -m agents.evaluate --arm {asked.arm} --count {asked.count}{' --development' * asked.development}",
         "version": __version__,
         "commit": commit(),
-        "seed": FIRST_SEED,
+        "seed": first_seed,
         "seconds": round(time.perf_counter() - began, 1),
         "arms": asked.count,
         "measures": {name: {"unit": unit, "meaning": meaning} for name, (unit, meaning) in MEASURES.items()},

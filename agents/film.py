@@ -10,11 +10,11 @@ import numpy as np
 from PIL import Image
 
 from agents.evaluate import FOLDER
-from agents.rollout import Agent
-from agents.sets import FIRST_SEED
 from flexarm_env import Arm
 from flexarm_env.controllers import CONTROLLERS, make_controller
 from flexarm_env.env import FlexArmEnv
+from flexarm_env.trials.rollout import Agent
+from flexarm_env.trials.sets import FIRST_SEED
 
 #: Pictures per second, and the width of one of the two pictures.
 RATE, WIDTH = 20, 400

@@ -14,16 +14,16 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
-from agents.measures import TAIL
-from agents.sets import FIRST_SEED
 from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.trials.measures import TAIL
+from flexarm_env.trials.sets import FIRST_SEED, SEARCH_SEED
 from flexarm_env.wrappers import Shaped
 
 FOLDER = Path(__file__).resolve().parent.parent / "results" / "recipe"
 #: Two readings, 20 ms apart, and the last command; a command is held for 20 ms.
 HISTORY = {"lags": [0, 4], "command_lags": [0], "estimate": False, "repeat": 4}
 #: Episodes between updates of PPO by which a curve is drawn, with seeds that neither training nor evaluation uses.
-WATCHED, WATCHED_SEED = 10, 900_000_000
+WATCHED, WATCHED_SEED = 10, SEARCH_SEED
 #: Episodes after the training.
 JUDGED = 100
 

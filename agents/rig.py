@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from agents.measures import Trajectories
-from agents.rollout import Agent
-from agents.sets import FIRST_SEED
 from flexarm_env.tasks import Task
+from flexarm_env.trials.measures import Trajectories
+from flexarm_env.trials.rollout import Agent
+from flexarm_env.trials.sets import FIRST_SEED
 from tests.rig import SIGNALS
 from tests.rig.experiments import stream
 from tests.rig.settings import make_beam, make_modes, make_par, make_sense, resolve

@@ -8,20 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from agents.goals import GOALS, cell_of
+from agents.goals import cell_of
 from agents.statistics import RESAMPLES, Interval, drawn_again, with_ends
+from flexarm_env.trials.score import cost
 
 Floats = NDArray[np.float64]
 
-#: Least values in a logarithm, far below the sensors' resolution: [s], [deg], [V].
-LEAST = {"settling_time": 0.005, "steady_error": 1e-3, "residual_strain": 1e-4}
 COLUMNS = (("settling_time", "settling [s]", 2), ("steady_error", "error [°]", 3), ("residual_strain", "strain [V]", 4))
-
-
-def cost(values: Mapping[str, Floats]) -> Floats:
-    """Compute the mean logarithm (runs, episodes) of settling time, steady error and residual strain."""
-    found: Floats = np.mean([np.log(np.maximum(values[name], LEAST[name])) for name in GOALS], axis=0)
-    return found
 
 
 def less_by(values: Mapping[str, Floats], reference: Mapping[str, Floats], seed: int = 0) -> Interval:

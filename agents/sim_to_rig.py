@@ -1,8 +1,8 @@
 """Compare controllers for a diagnosed arm with those for the nominal arm on the machine: python -m agents.sim_to_rig.
 
 The machine is the independent simulator of tests/rig with something hidden. Policies are trained, and classical
-controllers made, for the nominal arm, the nominal arm randomised (policies only) and the arm that `diagnose` corrected
-from three recordings of the machine; all then drive the machine.
+controllers made and tuned, for the nominal arm, the nominal arm randomised (policies only) and the arm that `diagnose`
+corrected from three recordings of the machine; all then drive the machine.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from agents.evaluate import RATE
 from agents.learning.artefact import Artefact
 from agents.learning.options import Plan
 from agents.learning.plan_file import read_plan
-from agents.measures import MEASURES, measure
 from agents.rig import drive
+from agents.rig_controllers import NOMINAL, RETUNED, controllers_of, retune, tuned_place
 from agents.rig_report import report_of, verdict_of
-from agents.sets import FIRST_SEED
 from agents.train import place_of
 from flexarm_env import Arm, InputError, Recording, __version__, diagnose
-from flexarm_env.controllers import make_controller
 from flexarm_env.files import write_whole
 from flexarm_env.tasks import TASKS
 from flexarm_env.terminal.provenance import commit
+from flexarm_env.trials.measures import MEASURES, measure
+from flexarm_env.trials.sets import FIRST_SEED
 from tests.rig import write_case
 
 PROJECT = Path(__file__).resolve().parent.parent
@@ -47,8 +47,6 @@ CASES: Mapping[str, tuple[Mapping[str, float], str]] = {
 }
 #: Training plan of each kind of policy; the corrected ones use the nominal plan on another arm.
 PLANS = {"nominal": "nominal", "randomised": "randomised", "corrected": "nominal"}
-NOMINAL = "thesis-fem"
-CLASSICAL = ("pd", "vibration_dual", "shaped_zvd", "lqg")
 
 
 def correct(case: str, folder: Path, jobs: int) -> None:
@@ -77,14 +75,25 @@ def wanted() -> list[tuple[str, str | None]]:
     return [("nominal", None), ("randomised", None), *(("corrected", case) for case in CASES)]
 
 
-def make(folder: Path, jobs: int, say: Callable[[str], None]) -> None:
-    """Make the missing diagnoses and policies."""
-    from agents.train import one_run
-
+def make(folder: Path, jobs: int, say: Callable[[str], None], policies: bool = True) -> None:
+    """Make the missing diagnoses, controllers and, unless they are left out, policies."""
     for case in CASES:
         if not (folder / "arms" / f"{case}.toml").is_file():
             say(f"diagnosing {case}")
             correct(case, folder / "arms", jobs)
+    for law in RETUNED:
+        for kind, arm in [("nominal", Arm.load(NOMINAL)), *((c, Arm.load(folder / "arms" / f"{c}.toml")) for c in CASES)]:
+            if not tuned_place(folder, law, kind).is_file():
+                say(f"tuning {law} on {kind}")
+                retune(law, arm, tuned_place(folder, law, kind))
+    if policies:
+        train_missing(folder)
+
+
+def train_missing(folder: Path) -> None:
+    """Train the missing policies."""
+    from agents.train import one_run
+
     most = max(plan_of(kind, case, folder)[1].seeds for kind, case in wanted())
     # seed by seed, so that a stopped run leaves equally many of each kind
     for seed in range(most):
@@ -100,14 +109,15 @@ def policies_of(folder: Path, kind: str, case: str) -> list[Path]:
     return [path for seed in range(plan.seeds) if (path := place_of(folder / "weights", name, seed)).is_file()]
 
 
-def evaluate(folder: Path, case: str, count: int, say: Callable[[str], None]) -> dict[str, dict[str, np.ndarray]]:
-    """Evaluate all policies and controllers on a machine: each measure (runs, episodes)."""
+def evaluate(
+    folder: Path, case: str, count: int, say: Callable[[str], None], policies: bool = True
+) -> dict[str, dict[str, np.ndarray]]:
+    """Evaluate all controllers and, unless they are left out, policies on a machine: each measure (runs, episodes)."""
     settings, task = CASES[case][0], TASKS["slew"]
     agents: dict[str, list[Any]] = {}
-    for kind in PLANS:
+    for kind in PLANS if policies else ():
         agents[f"policy, {kind}"] = [Artefact.load(path).agent() for path in policies_of(folder, kind, case)]
-    arms = {"nominal": Arm.load(NOMINAL), "corrected": Arm.load(folder / "arms" / f"{case}.toml")}
-    agents |= {f"{name}, {kind}": [make_controller(name, arm, 1.0 / RATE)] for name in CLASSICAL for kind, arm in arms.items()}
+    agents |= controllers_of(folder, case)
     found = {}
     for name, runs in agents.items():
         say(f"{case}: {name}")
@@ -117,10 +127,18 @@ def evaluate(folder: Path, case: str, count: int, say: Callable[[str], None]) ->
     return found
 
 
+def made_cases(folder: Path, controllers: bool) -> list[str]:
+    """List the cases that have a corrected arm and, unless only controllers are wanted, policies of each kind."""
+    if controllers:
+        return [case for case in CASES if (folder / "arms" / f"{case}.toml").is_file()]
+    return [case for case in CASES if all(policies_of(folder, kind, case) for kind in PLANS)]
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Evaluate the stored policies, after making missing ones with --make, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.sim_to_rig", description=__doc__.partition("\n")[0])
     parser.add_argument("--make", action="store_true", help="first diagnose and train what is not there; stopped, it goes on")
+    parser.add_argument("--controllers", action="store_true", help="controllers only; the results are controllers.md and .json")
     parser.add_argument("--count", type=int, default=20, help="episodes on each machine; 20 by default")
     parser.add_argument("--jobs", type=int, default=2, help="processes of a diagnosis; 2 by default")
     parser.add_argument("--save", type=Path, default=FOLDER, help="folder of arms, policies and results; results/sim_to_rig")
@@ -134,11 +152,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if asked.count < 1 or asked.jobs < 1:
             raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
         if asked.make:
-            make(asked.save, asked.jobs, say)
-        there = [case for case in CASES if all(policies_of(asked.save, kind, case) for kind in PLANS)]
+            make(asked.save, asked.jobs, say, not asked.controllers)
+        there = made_cases(asked.save, asked.controllers)
         if not there:
-            raise InputError(f"no policies in {asked.save}; add --make to diagnose and train")
-        values = {case: evaluate(asked.save, case, asked.count, say) for case in there}
+            what = "corrected arms" if asked.controllers else "policies"
+            raise InputError(f"no {what} in {asked.save}; add --make to diagnose, tune and train")
+        values = {case: evaluate(asked.save, case, asked.count, say, not asked.controllers) for case in there}
     except InputError as error:
         print(error, file=sys.stderr)
         return 2
@@ -146,7 +165,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("\nstopped; the same command goes on", file=sys.stderr)
         return 130
     result = {
-        "command": f"python -m agents.sim_to_rig --count {asked.count}",
+        "command": f"python -m agents.sim_to_rig{' --controllers' * asked.controllers} --count {asked.count}",
         "version": __version__,
         "commit": commit(),
         "seed": FIRST_SEED,
@@ -156,9 +175,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "not_made": [case for case in CASES if case not in there],
         "cases": {case: verdict_of(found) for case, found in values.items()},
     }
-    write_whole(asked.save / "sim_to_rig.json", json.dumps(result, indent=1, ensure_ascii=False) + "\n")
-    write_whole(asked.save / "sim_to_rig.md", report_of(result))
-    print(f"\n{asked.save / 'sim_to_rig.md'}: {result['seconds']} s")
+    place = asked.save / ("controllers.md" if asked.controllers else "sim_to_rig.md")
+    write_whole(place.with_suffix(".json"), json.dumps(result, indent=1, ensure_ascii=False) + "\n")
+    write_whole(place, report_of(result))
+    print(f"\n{place}: {result['seconds']} s")
     return 0
 
 

@@ -1,108 +1,120 @@
-"""Search for better options with Optuna: python -m agents.tune configs/agents/ppo_slew.toml --storage search.journal."""
+"""Search for better options of control laws and policies: python -m agents.tune lqg mpc configs/agents/ppo_slew.toml.
+
+A law becomes configs/controllers/NAME_tuned.toml; of a policy, the options that were found are printed. Both are judged on the
+same arms, by the same score, with the same seeds. Stopped by Ctrl-C, the same command goes on.
+"""
 
 from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-
-from agents.goals import GOALS
 from agents.learning.options import Plan
 from agents.learning.plan_file import read_plan, read_table
-from agents.measures import measure
-from agents.rollout import roll_out
-from agents.sets import ArmSet
-from agents.statistics import interquartile_mean
+from flexarm_env import Arm
 from flexarm_env.errors import InputError
-from flexarm_env.tasks import TASKS
+from flexarm_env.tuning.judge import cells_of, score
+from flexarm_env.tuning.search import Budget, tune
+from flexarm_env.tuning.spaces import SPACES, Range, nested, space_of
+from flexarm_env.tuning.study import Study, Values
 
-#: Searched options: path in a plan, lowest and highest value; all on a logarithmic scale.
-RANGES = {
-    "learning.learning_rate": (2e-4, 4e-3),
-    "reward.vibration": (0.1, 3.0),
-    "reward.strain_scale": (1e-3, 0.1),
-    "reward.tip_scale": (0.05, 2.0),
-    "reward.effort": (1e-3, 0.2),
+FOLDER = Path(__file__).resolve().parent.parent / "configs" / "controllers"
+#: Searched options of a policy's plan.
+PLAN_SPACE = {
+    "learning.learning_rate": Range(2e-4, 4e-3),
+    "reward.vibration": Range(0.1, 3.0),
+    "reward.strain_scale": Range(1e-3, 0.1),
+    "reward.tip_scale": Range(0.05, 2.0),
+    "reward.effort": Range(1e-3, 0.2),
 }
-#: Arms on which a trial is judged; their seeds are shifted from those of evaluation, so that tuning uses none of its arms.
-JUDGES = ArmSet("judges", "as randomised, other draws", payload=True, constants=0.1, friction=0.2)
-JUDGES_SEED, JUDGES_COUNT = 900_000_000, 50
 
 
 def changed(plan: Plan, values: Mapping[str, float]) -> Plan:
     """Replace the values at some paths of a plan."""
     table = plan.table()
-    for path, value in values.items():
-        section, key = path.split(".")
-        table[section][key] = value
+    for section, options in nested(values).items():
+        table[section].update(options)
     return read_table(table)
 
 
-def score_of(plan: Plan, seed: int) -> float:
-    """Train once and return the mean logarithm of the interquartile means of the goals' measures: less is better."""
+def score_of(plan: Plan, seed: int, budget: Budget) -> float:
+    """Train once, and compute the score on the cells of the plan's task."""
     from agents.learning.run import train
 
     made = train(plan, seed, None, lambda share, text: None)
-    seen = roll_out(made.agent(), TASKS[plan.task], made.arm, JUDGES, JUDGES_COUNT, first_seed=JUDGES_SEED)
-    found = measure(seen, TASKS[plan.task])
-    return float(np.mean([np.log(max(interquartile_mean(found[name]), 1e-6)) for name in GOALS]))
+    cells = cells_of(made.arm, budget.arms, budget.seed, (plan.task,))
+    return score(made.agent, made.arm, cells, budget.arms, budget.seed)
 
 
-def open_study(storage: Path, name: str) -> Any:
-    """Open the study of a name: a new one, or one shared with other processes and machines through the file."""
-    import optuna
-    from optuna.storages import JournalStorage
-    from optuna.storages.journal import JournalFileBackend
+def tune_policy(config: Path, actions: int, budget: Budget, journal: Path | None) -> dict[str, float]:
+    """Search for the options of a policy's plan; return the best ones by path.
 
-    optuna.logging.set_verbosity(optuna.logging.WARNING)
-    return optuna.create_study(
-        study_name=name, storage=JournalStorage(JournalFileBackend(str(storage))), load_if_exists=True, direction="minimize"
-    )
+    Args:
+        config: TOML file to start from.
+        actions: in the training of each trial.
+        budget: of the search.
+        journal: file in which trials outlast a stop.
+    """
+    plan = read_table(read_plan(config).table() | {"actions": actions})
+    study = Study(f"{config.stem} {actions} {budget.arms} {budget.seed}", PLAN_SPACE, journal)
+
+    def objective(values: Values) -> float:
+        return score_of(changed(plan, values), len(study.finished()), budget)
+
+    study.run(budget.trials, budget.seed, objective, report=said(config.stem, budget))
+    return study.best()[0]
+
+
+def said(name: str, budget: Budget) -> Callable[[int, float], None]:
+    """Make the line that shows how far a search is."""
+
+    def report(done: int, least: float) -> None:
+        print(f"\r{name}: {done} of {budget.trials}, {least:.3f} ", end="", file=sys.stderr, flush=True)
+
+    return report
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Try some plans, print the best one's options, and return the exit code."""
-    parser = argparse.ArgumentParser(prog="python -m agents.tune", description=__doc__)
-    parser.add_argument("config", type=Path, help="TOML file to start from")
-    parser.add_argument("--storage", type=Path, required=True, help="journal file; who shares it shares the search")
-    parser.add_argument("--trials", type=int, default=20, help="for this process; 20 by default")
-    parser.add_argument("--actions", type=int, default=4_000_000, help="in each trial; 4 million by default")
+    """Search for the options of each subject, and return the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m agents.tune", description=__doc__.partition("\n")[0])
+    parser.add_argument("subjects", nargs="+", metavar="NAME|CONFIG", help=f"of {', '.join(SPACES)}; or a policy's TOML file")
+    parser.add_argument("--journal", type=Path, help="file of the trials; who shares it shares the search")
+    parser.add_argument("--arm", default="thesis", help="of the control laws: name or file; thesis by default")
+    parser.add_argument("--trials", type=int, default=Budget().trials, help=f"of each; {Budget().trials} by default")
+    parser.add_argument("--arms", type=int, default=Budget().arms, help=f"in each cell; {Budget().arms} by default")
+    parser.add_argument("--seed", type=int, default=0, help="of values and arms; 0 by default")
+    parser.add_argument("--actions", type=int, default=4_000_000, help="in a trial of a policy; 4 million by default")
+    parser.add_argument("--save", type=Path, default=FOLDER, help="folder of the tuned laws; configs/controllers by default")
     asked = parser.parse_args(arguments)
     try:
-        plan = changed_length(read_plan(asked.config), asked.actions)
-        if asked.trials < 1:
-            raise InputError(f"--trials {asked.trials}; give a whole number from 1 up")
-        if not asked.storage.parent.is_dir():
-            raise InputError(f"--storage {asked.storage}: there is no folder {asked.storage.parent}; make it first")
+        budget = Budget(asked.trials, asked.arms, asked.seed)
+        for subject in asked.subjects:
+            if not subject.endswith(".toml"):
+                space_of(subject)
+        for subject in asked.subjects:
+            one_search(subject, asked, budget)
     except InputError as error:
         print(error, file=sys.stderr)
         return 2
-    study = open_study(asked.storage, asked.config.stem)
-
-    def objective(trial: Any) -> float:
-        values = {path: trial.suggest_float(path, low, high, log=True) for path, (low, high) in RANGES.items()}
-        score = score_of(changed(plan, values), trial.number)
-        print(f"trial {trial.number}: {score:.3f}", file=sys.stderr)
-        return score
-
-    try:
-        study.optimize(objective, n_trials=asked.trials)
     except KeyboardInterrupt:
-        print("stopped; the same command goes on", file=sys.stderr)
+        print("\nstopped; with --journal, the same command goes on", file=sys.stderr)
         return 130
-    print(f"best of {len(study.trials)}: {study.best_value:.3f}")
-    for path, value in study.best_params.items():
-        print(f"{path} = {value:.4g}")
     return 0
 
 
-def changed_length(plan: Plan, actions: int) -> Plan:
-    """Replace the number of actions of a plan."""
-    return read_table(plan.table() | {"actions": actions})
+def one_search(subject: str, asked: argparse.Namespace, budget: Budget) -> None:
+    """Search for the options of one law or policy, and write or print them."""
+    if subject.endswith(".toml"):
+        values = tune_policy(Path(subject), asked.actions, budget, asked.journal)
+        print(f"\n{subject}", *(f"{path} = {value:.4g}" for path, value in values.items()), sep="\n")
+        return
+    found = tune(subject, Arm.load(asked.arm), budget, asked.journal, said(subject, budget))
+    place = asked.save / f"{subject}_tuned.toml"
+    asked.save.mkdir(parents=True, exist_ok=True)
+    found.save(place)
+    print(f"\n{place}: {found.search['score_before']} before, {found.search['score']} tuned")
 
 
 if __name__ == "__main__":

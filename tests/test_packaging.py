@@ -29,6 +29,7 @@ LAYERS = (
     {"experiments"},
     {"identify", "controllers", "tasks", "render", "env"},
     {"vector_env", "sb3", "wrappers", "pictures", "registration"},
+    {"trials", "tuning"},
     {"terminal"},
     {"lab", "demo", "thesis"},
     {"cli", "__main__"},
@@ -155,7 +156,7 @@ def test_a_right_import_passes(tmp_path, place, line):
 def test_every_import_is_declared():
     extras = METADATA["optional-dependencies"]
     requirements = [*METADATA["dependencies"], *extras["plots"], *extras["lab"], *extras["logs"]]
-    requirements += [*extras["render"], *extras["train"]]
+    requirements += [*extras["render"], *extras["train"], *extras["control"]]
     declared = {re.match(r"[\w.-]+", line)[0].lower() for line in requirements}
     installed = importlib.metadata.packages_distributions()
     files = (PROJECT / PACKAGE).rglob("*.py")

@@ -75,13 +75,16 @@ class Artefact:
         except (SafetensorError, KeyError, json.JSONDecodeError, tomllib.TOMLDecodeError) as error:
             raise InputError(f"{path} is no policy ({error}); python -m agents.train makes one") from None
 
-    def agent(self) -> LearnedPolicy:
+    def agent(self, interval: float = 1.0 / RATE) -> LearnedPolicy:
         """Build the policy, ready to drive arms.
+
+        Args:
+            interval: control period [s]; its filters and base controller are made for it.
 
         Raises:
             InputError: where the weights do not fit the plan.
         """
-        interface = PolicyInterface(self.plan.interface, self.arm, 1.0 / RATE)
+        interface = PolicyInterface(self.plan.interface, self.arm, interval)
         policy = bare_policy(self.plan, interface.size)
         try:
             lacking, surplus = policy.load_state_dict(dict(self.weights), strict=False)
@@ -99,7 +102,7 @@ def acting_weights(policy: BasePolicy) -> dict[str, torch.Tensor]:
 
 
 class LearnedPolicy:
-    """Drives arms, one or many: an Agent of agents/rollout.py.
+    """Drives arms, one or many: an Agent of flexarm_env/trials/rollout.py.
 
     Args:
         policy: of Stable-Baselines3 or sb3-contrib, its critic untrained.

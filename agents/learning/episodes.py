@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
 from agents.learning.options import Plan
-from agents.sets import FIRST_SEED
 from flexarm_env.arm import Arm
 from flexarm_env.tasks import TASKS
+from flexarm_env.trials.sets import FIRST_SEED
 from flexarm_env.vector_env import FlexArmVectorEnv
 from flexarm_env.wrappers import ShapedVector
 from flexarm_env.wrappers.arms import arms_of, draws_of

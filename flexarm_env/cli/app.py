@@ -231,6 +231,34 @@ def effects(
 
 
 @app.command()
+def tune(
+    controller: Annotated[
+        str, typer.Argument(metavar="CONTROLLER", help="Name of a control law, such as lqg or pid_compensated.")
+    ],
+    arm: ArmName = "thesis",
+    effects: Effects = None,
+    start: Annotated[
+        Path | None, typer.Option(metavar="FILE.toml", help="A tuned controller to start from, such as one for the nominal arm.")
+    ] = None,
+    save: Annotated[Path | None, typer.Option(metavar="FILE.toml", help="Write the tuned controller.")] = None,
+    trials: Annotated[int, typer.Option(min=1, help="Values to try.")] = 60,
+    arms: Annotated[int, typer.Option(min=1, max=1000, help="Arms in each cell of a trial.")] = 12,
+    journal: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Keep the trials there: after a stop the same command goes on.")
+    ] = None,
+    seed: Seed = 0,
+    json: Json = None,
+) -> None:
+    """Search for the options of a controller on an arm, with robustness among the objectives, and measure its margins."""
+    arguments.check(json, save, journal, read=[start] if start else [], specs=effects)
+    from flexarm_env.cli import tuning
+    from flexarm_env.tuning.search import Budget
+
+    model = arguments.load_arm(arm, effects)
+    tuning.run(controller, model, arm, Budget(trials, arms, seed), start, (save, journal, json))
+
+
+@app.command()
 def envs(arm: ArmName = "thesis", json: Json = None) -> None:
     """List the environments with an arm: task, observation, action, length of an episode."""
     arguments.check(json)

@@ -4,25 +4,33 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from flexarm_env.arm import Arm
 from flexarm_env.controllers.base import Controller
 from flexarm_env.controllers.filtered import FilteredVibrationSuppression
 from flexarm_env.controllers.lqg import LQG
+from flexarm_env.controllers.mpc import MPC
 from flexarm_env.controllers.pd import PD, RateLimitedPD
+from flexarm_env.controllers.pid import CompensatedPID
 from flexarm_env.controllers.scheduled import ScheduledLQG
 from flexarm_env.controllers.shaping import ShapedPD
+from flexarm_env.controllers.tuned import TunedController, on_drive, shipped_controllers
 from flexarm_env.controllers.vibration import TORQUE_PER_STRAIN, VibrationSuppression
 from flexarm_env.errors import InputError, did_you_mean
 
 
 class Recipe(NamedTuple):
-    """A controller's class, its options where they differ from the class's defaults, and one line for a person."""
+    """A controller's class, its options where they differ from the class's defaults, and one line for a person.
+
+    Gains that are for the thesis's drive are scaled to the arm's; others are the arm's own.
+    """
 
     build: type[Controller]
     options: Mapping[str, Any]
     meaning: str
+    for_thesis_drive: bool = False
 
 
 CONTROLLERS: dict[str, Recipe] = {
@@ -56,20 +64,40 @@ CONTROLLERS: dict[str, Recipe] = {
     "shaped_zvd": Recipe(ShapedPD, {"shaper": "zvd"}, "PD, target shaped for zero vibration and derivative"),
     "lqg": Recipe(LQG, {}, "Kalman filter, linear-quadratic regulator, estimated friction opposed"),
     "lqg_scheduled": Recipe(ScheduledLQG, {}, "LQG with gains by the payload that the stuck arm's frequency shows"),
+    "pid_compensated": Recipe(CompensatedPID, {}, "PID about a quintic reference, feedforward, friction compensated"),
+    "mpc": Recipe(MPC, {}, "linear MPC with the filter, friction and payload of lqg_scheduled"),
 }
+
+
+def tuned_recipe(tuned: TunedController) -> Recipe:
+    """Make the recipe of a law with the options that a search has found.
+
+    Raises:
+        InputError: for a law or an option that does not exist.
+    """
+    if tuned.controller not in CONTROLLERS:
+        raise InputError(f"no controller '{tuned.controller}'{did_you_mean(tuned.controller, CONTROLLERS)}")
+    recipe = CONTROLLERS[tuned.controller]
+    _check(tuned.controller, recipe, tuned.options)
+    found = f"{tuned.controller}, tuned on {tuned.arm}"
+    return Recipe(recipe.build, {**recipe.options, **tuned.options}, found, for_thesis_drive=True)
+
+
+#: As printed, and as a search has tuned them.
+CONTROLLERS |= {name: tuned_recipe(tuned) for name, tuned in shipped_controllers().items()}
 
 
 def make_controller(name: str, arm: Arm, interval: float, **options: Any) -> Controller:
     """Make a controller by its name.
 
     Args:
-        name: one of CONTROLLERS.
+        name: one of CONTROLLERS, or a .toml file that `flexarm tune` wrote.
         arm: model of the arm on which the controller is designed.
         interval: control period [s].
         options: of the controller's class, over those of its recipe.
 
     Raises:
-        InputError: for a name or option that does not exist, or an arm that lacks a signal.
+        InputError: for a name, file or option that does not exist, or an arm that lacks a signal.
 
     Examples:
         >>> import numpy as np
@@ -79,14 +107,23 @@ def make_controller(name: str, arm: Arm, interval: float, **options: Any) -> Con
         >>> float(controller.act(np.array([0.0, 0.0, 0.0, 0.0, 0.5])))  # arm angle, motor speed, strains; target [rad]
         1.2654
     """
-    if name not in CONTROLLERS:
+    if Path(name).suffix == ".toml":
+        recipe = tuned_recipe(TunedController.load(Path(name)))
+    elif name in CONTROLLERS:
+        recipe = CONTROLLERS[name]
+    else:
         raise InputError(f"no controller '{name}'{did_you_mean(name, CONTROLLERS)}")
-    recipe = CONTROLLERS[name]
+    _check(name, recipe, options)
+    own = on_drive(arm, recipe.options) if recipe.for_thesis_drive else recipe.options
+    return recipe.build(arm, interval, **{**own, **options})
+
+
+def _check(name: str, recipe: Recipe, options: Mapping[str, Any]) -> None:
+    """Refuse options that a recipe's class does not have."""
     allowed = _options(recipe.build)
     for option in options:
         if option not in allowed:
             raise InputError(f"controller '{name}' has no option '{option}'{did_you_mean(option, allowed)}")
-    return recipe.build(arm, interval, **{**recipe.options, **options})
 
 
 def _options(build: type[Controller]) -> list[str]:
@@ -97,4 +134,4 @@ def _options(build: type[Controller]) -> list[str]:
     return own + (_options(build.__mro__[1]) if hands_on else [])
 
 
-__all__ = ["CONTROLLERS", "Controller", "Recipe", "make_controller"]
+__all__ = ["CONTROLLERS", "Controller", "Recipe", "make_controller", "tuned_recipe"]

@@ -33,6 +33,8 @@ class Controller(ABC):
 
     #: Signals without which the controller cannot work.
     needs: tuple[str, ...] = ("arm_angle", "motor_speed")
+    #: Motor speeds [rad/s], one in each region in which the law is another linear one.
+    regions: tuple[float, ...] = (0.0,)
 
     def __init__(self, arm: Arm, interval: float) -> None:
         if not (math.isfinite(interval) and interval > 0.0):

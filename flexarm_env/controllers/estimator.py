@@ -32,13 +32,18 @@ class Estimator:
         arm: modelled.
         interval: control period [s].
         highest_frequency: of the vibrations that are followed [Hz].
+        friction_change: standard deviation of the friction's change in 5 ms [Nm].
+        order: number of slow coordinates at most; all below the frequency by default.
 
     Raises:
         InputError: for an arm with a state that is not observable from its readings, or with noise that only recordings give.
     """
 
-    def __init__(self, arm: Arm, interval: float, highest_frequency: float = HIGHEST_FREQUENCY) -> None:
-        self.model = slow_part(arm, interval, highest_frequency)
+    def __init__(
+        self, arm: Arm, interval: float, highest_frequency: float = HIGHEST_FREQUENCY,
+        friction_change: float = FRICTION_CHANGE, order: int | None = None,
+    ) -> None:  # fmt: skip
+        self.model = slow_part(arm, interval, highest_frequency, order)
         self.size = size = len(self.model.transition)
         self.transition = np.eye(size + 1)
         self.transition[:size, :size] = self.model.transition
@@ -51,15 +56,17 @@ class Estimator:
         self.output = np.hstack([self.model.output, self.model.direct[:, 1:]])
         noise = [max(arm.reading_noise(signal), LEAST_NOISE) for signal in arm.sensors]
         extra = [STRAIN_LEFT_OUT * arm.sensor(signal).strain for signal in arm.sensors]
-        self.gain = _gain(self.transition, self.output, self._process(interval), np.hypot(noise, extra), arm.name)
+        self.gain = _gain(
+            self.transition, self.output, self._process(interval, friction_change), np.hypot(noise, extra), arm.name
+        )
         self._angle = self.model.signals.index("arm_angle")
 
-    def _process(self, interval: float) -> Floats:
+    def _process(self, interval: float, friction_change: float) -> Floats:
         """Compute the process covariance of a sample (slow + 1, slow + 1)."""
         push = self.model.response[:, 1]
         process = np.zeros((self.size + 1,) * 2)
         process[:-1, :-1] = TORQUE_NOISE**2 * (np.outer(push, push) + SHARE_OF_ALL * np.diag(push**2))
-        process[-1, -1] = FRICTION_CHANGE**2 * interval / USUAL_INTERVAL
+        process[-1, -1] = friction_change**2 * interval / USUAL_INTERVAL
         return process
 
     def start(self, count: int) -> None:
@@ -80,8 +87,12 @@ class Estimator:
 
     def predict(self, command: Floats) -> None:
         """Predict the estimate one sample ahead under commands (count,) behind the drive."""
-        self.state = product(self.transition, self.state) + command[:, None] * self.response + self.drift
+        self.state = self.ahead(self.state, command)
         self._sent = command
+
+    def ahead(self, state: Floats, command: Floats) -> Floats:
+        """Compute the state (count, slow + 1) a sample after another one, under commands (count,) behind the drive."""
+        return product(self.transition, state) + command[:, None] * self.response + self.drift
 
     def amend(self, extra: Floats) -> None:
         """Add the effect of a command extra (count,) [A or V] to that of the last prediction."""

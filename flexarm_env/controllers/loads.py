@@ -29,10 +29,14 @@ class KnownLoads:
 
     def compensated(self, command: Floats, target: Floats) -> Floats:
         """Add the compensation to a law's commands (count,) [A or V] at targets (count,) [rad]."""
-        command = command + (self.stiffness * target - self.torque)
+        command = command + self.steady(target)
         if self.dead_zone > 0.0:
             command = command + self.dead_zone * np.clip(command / (EDGE * self.dead_zone), -1.0, 1.0)
         return command
+
+    def steady(self, target: Floats) -> Floats:
+        """Compute the commands (count,) [A or V] that hold arms at targets (count,) [rad] against their loads."""
+        return self.stiffness * target - self.torque
 
     def behind_dead_zone(self, command: Floats) -> Floats:
         """Compute the commands (count,) behind the dead zone."""

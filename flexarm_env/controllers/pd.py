@@ -56,7 +56,7 @@ class RateLimitedPD(PD):
         rate = command_scale(arm) * RATE if rate is None else rate
         if not rate > 0.0:
             raise InputError(f"rate {rate:g} A/s; give a positive number such as {RATE:g}")
-        self._step = rate * interval
+        self.rate, self._step = rate, rate * interval
 
     def _start(self, count: int) -> None:
         super()._start(count)

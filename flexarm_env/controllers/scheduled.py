@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from flexarm_env.arm import Arm
 from flexarm_env.controllers.base import Floats
-from flexarm_env.controllers.lqg import LQG
+from flexarm_env.controllers.lqg import LQG, LQGDesign
 from flexarm_env.controllers.payload import PayloadEstimator
 
 #: Payloads [kg] of the designs, above the modelled arm's own; each estimate uses the nearest.
@@ -21,17 +24,27 @@ class ScheduledLQG(LQG):
     Args:
         arm: modelled.
         interval: control period [s].
+        design: numbers that differ from those of LQGDesign.
     """
 
-    def __init__(self, arm: Arm, interval: float) -> None:
-        super().__init__(arm, interval)
+    def __init__(self, arm: Arm, interval: float, design: LQGDesign | Mapping[str, Any] | None = None) -> None:
+        super().__init__(arm, interval, design)
         self.weigher = PayloadEstimator(arm, interval)
         own = arm.value("beam.tip_mass")
         self._payloads = own + np.array(PAYLOADS)
-        self._designs = [LQG(arm.with_values({"beam.tip_mass": mass}), interval) for mass in self._payloads]
+        self._designs = self._with_payloads(None)
+        # where a heavier arm has fewer slow vibrations, all designs have those
+        orders = {design.estimator.size for design in self._designs}
+        if len(orders) > 1:
+            super().__init__(arm, interval, design, min(orders))
+            self._designs = self._with_payloads(min(orders))
         lifts = [design.estimator.model.lift for design in self._designs]
         #: (old, new, slow + 1, slow + 1): transforms of an estimate from one design's coordinates to another's.
         self._between = np.array([[_with_friction(np.linalg.pinv(new) @ old) for new in lifts] for old in lifts])
+
+    def _with_payloads(self, order: int | None) -> list[LQG]:
+        arms = [self.arm.with_values({"beam.tip_mass": mass}) for mass in self._payloads]
+        return [LQG(arm, self.interval, self.design, order) for arm in arms]
 
     def _start(self, count: int) -> None:
         super()._start(count)

@@ -41,15 +41,19 @@ class SlowPart:
         return self.lift[self.names.index(name)]
 
 
-def slow_part(arm: Arm, interval: float, highest_frequency: float) -> SlowPart:
+def slow_part(arm: Arm, interval: float, highest_frequency: float, order: int | None = None) -> SlowPart:
     """Reduce the moving arm with rigid gears to its motion below highest_frequency [Hz] and a quarter of the sampling rate.
 
-    The slow invariant subspace is exact, and the fast part keeps its static gain.
+    The slow invariant subspace is exact, and the fast part keeps its static gain. An order leaves out the fastest of it as well,
+    whole pairs at a time.
     """
     for effect in ("backlash", "gear_compliance"):
         arm = arm.without_effect(effect)
     model = linearise(arm.with_values({"drive.gear_stiffness": 0.0}), "moving", interval)
     bound = 2.0 * np.pi * min(highest_frequency, 0.25 / interval)
+    sizes = np.sort(np.abs(np.linalg.eigvals(model.dynamics)))
+    if order is not None and order < np.searchsorted(sizes, bound):
+        bound = float(sizes[order - 1 : order + 1].mean())
     upper, basis, count = schur(model.dynamics, sort=lambda real, imag: np.hypot(real, imag) <= bound)
     slow, fast = upper[:count, :count], upper[count:, count:]
     mixed = solve_sylvester(slow, -fast, -upper[:count, count:])

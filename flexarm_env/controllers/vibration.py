@@ -55,6 +55,7 @@ class VibrationSuppression(PD):
         else:
             self._torque_per_strain, self._zero = torque_per_strain, arm.sensors[self._gage]["offset"]
         self.high_gain, self.low_gain, self.low_speed = high_gain, low_gain, low_speed
+        self.regions = (0.5 * low_speed, 2.0 * low_speed)
         # M_o and kφ stand on the motor's side, as does T_c/N
         self._command_per_torque = gears / self.hub_torque_per_command
         self._compensation = self.coulomb_torque() / self.hub_torque_per_command if friction_compensation else 0.0

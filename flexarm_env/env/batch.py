@@ -151,10 +151,22 @@ class Batch:
         drawn = [self.setup.arm] * len(arms)
         if self.setup.variation.ranges and len(arms):
             drawn = [self.arm_of(int(arm)) for arm in arms]
-            self.constants[arms] = self.plant.constants_of([arm.structure() for arm in drawn], [arm.laws() for arm in drawn])
+            self.constants[arms] = self._constants_of(drawn)
         for i, arm in enumerate(arms):
             self._start(int(arm), drawn[i], start)
         self.aim(arms, start)
+
+    def _constants_of(self, drawn: Sequence[Arm]) -> Floats:
+        """Compute the plant's constants (arms, numbers) of drawn arms.
+
+        Raises:
+            InputError: for an arm of another kind, which the ends of the ranges did not show.
+        """
+        try:
+            return self.plant.constants_of([arm.structure() for arm in drawn], [arm.laws() for arm in drawn])
+        except ValueError:
+            paths = ", ".join(path for path, _, _ in self.setup.variation.ranges)
+            raise InputError(f"the ranges of {paths} change how the arm is built, not only its numbers; narrow them") from None
 
     def aim(self, arms: Sequence[int] | Indices, start: Start) -> None:
         """Set the targets of some arms where they are not the task's, at the present time of their episodes."""

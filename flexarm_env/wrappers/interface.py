@@ -130,5 +130,5 @@ class PolicyInterface:
         if self.estimator:
             self.estimator.predict(acts)
         if isinstance(self.base, LQG):
-            self.base.estimator.amend(acts - self.loads.behind_dead_zone(self.wanted * self.limit))
+            self.base.amend(acts - self.loads.behind_dead_zone(self.wanted * self.limit))
         return share[:, None].astype(np.float32)

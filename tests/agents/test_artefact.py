@@ -19,11 +19,11 @@ from agents.learning.artefact import Artefact
 from agents.learning.checkpoint import sealed
 from agents.learning.options import ALGORITHMS
 from agents.learning.run import train
-from agents.measures import measure
-from agents.rollout import roll_out
-from agents.sets import SETS
 from flexarm_env import Arm, InputError
 from flexarm_env.tasks import TASKS
+from flexarm_env.trials.measures import measure
+from flexarm_env.trials.rollout import roll_out
+from flexarm_env.trials.sets import SETS
 
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS)

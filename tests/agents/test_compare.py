@@ -14,8 +14,8 @@ from agents import compare as command
 from agents.goals import GOALS, THESIS, against_classical, against_thesis, cell_of, verdicts
 from agents.learning.plan_file import read_table
 from agents.learning.run import train
-from agents.sets import SETS
 from flexarm_env.controllers import CONTROLLERS
+from flexarm_env.trials.sets import SETS
 
 
 def values(settling: float, error: float, strain: float) -> dict[str, np.ndarray]:

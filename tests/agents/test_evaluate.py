@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from agents.evaluate import evaluate_controller, main
-from agents.measures import MEASURES, Trajectories, measure
-from agents.rollout import roll_out
-from agents.sets import SETS
 from agents.statistics import mean_interval, paired_difference
 from flexarm_env import Arm
 from flexarm_env.controllers import make_controller
 from flexarm_env.tasks import TASKS
+from flexarm_env.trials.measures import MEASURES, Trajectories, measure
+from flexarm_env.trials.rollout import roll_out
+from flexarm_env.trials.sets import SETS
 
 INTERVAL = 0.005
 

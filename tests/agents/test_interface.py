@@ -8,11 +8,11 @@ import pytest
 pytest.importorskip("stable_baselines3")
 
 from agents.learning.episodes import RATE
-from agents.rollout import roll_out
-from agents.sets import SETS
 from flexarm_env import Arm
 from flexarm_env.controllers import make_controller
 from flexarm_env.tasks import TASKS
+from flexarm_env.trials.rollout import roll_out
+from flexarm_env.trials.sets import SETS
 from flexarm_env.wrappers import InterfaceOptions, PolicyInterface
 
 

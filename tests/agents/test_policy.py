@@ -11,11 +11,11 @@ from sb3_contrib import RecurrentPPO
 from stable_baselines3 import PPO
 
 from agents.policy import TrainedPolicy
-from agents.rollout import roll_out
-from agents.sets import FIRST_SEED, SETS
 from flexarm_env import Arm
 from flexarm_env.sb3 import make_vec
 from flexarm_env.tasks import TASKS
+from flexarm_env.trials.rollout import roll_out
+from flexarm_env.trials.sets import FIRST_SEED, SETS
 
 
 @pytest.mark.parametrize(("algorithm", "policy"), [(PPO, "MlpPolicy"), (RecurrentPPO, "MlpLstmPolicy")])

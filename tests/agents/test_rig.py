@@ -10,16 +10,16 @@ import pytest
 pytest.importorskip("stable_baselines3")
 
 from agents.goals import GOALS
-from agents.measures import MEASURES, measure
 from agents.rig import Machine, drive
 from agents.rig_report import cost, less_by, verdict_of
-from agents.rollout import roll_out
-from agents.sets import SETS
 from agents.sim_to_rig import CASES, main, plan_of, wanted
 from flexarm_env import Arm
 from flexarm_env.controllers import make_controller
 from flexarm_env.effects import catalogue
 from flexarm_env.tasks import TASKS
+from flexarm_env.trials.measures import MEASURES, measure
+from flexarm_env.trials.rollout import roll_out
+from flexarm_env.trials.sets import SETS
 from tests.rig import CATALOGUE, simulate
 
 

@@ -15,10 +15,10 @@ from agents.compare import evaluate_policies, find_policies
 from agents.goals import GOALS, cell_of
 from agents.learning.artefact import Artefact
 from agents.learning.plan_file import read_plan
-from agents.measures import measure
 from agents.rig import drive
 from agents.sim_to_rig import CASES, PLANS, plan_of, policies_of
 from flexarm_env.tasks import TASKS
+from flexarm_env.trials.measures import measure
 
 PROJECT = Path(__file__).parents[2]
 RESULTS = PROJECT / "results"

@@ -1,4 +1,4 @@
-"""The search for better options, in a storage that others share."""
+"""The search of laws and policies: judged alike, resumed bit for bit, refused in one line."""
 
 from __future__ import annotations
 
@@ -9,40 +9,63 @@ import pytest
 pytest.importorskip("stable_baselines3")
 pytest.importorskip("optuna")
 
+from agents.learning.episodes import SEEDS_EACH
 from agents.learning.options import Plan
 from agents.learning.plan_file import read_table
-from agents.tune import JUDGES_COUNT, JUDGES_SEED, RANGES, changed, main
+from agents.tune import PLAN_SPACE, changed, main
+from flexarm_env.controllers.tuned import TunedController
+from flexarm_env.trials.sets import DEVELOPMENT_SEED, FIRST_SEED, SEARCH_SEED
+from flexarm_env.tuning import judge
 
 TINY = "actions = 20\nat_once = 2\n[network]\nlayers = [4]\n[learning]\nbatch_size = 20\n[interface]\nrepeat = 100\n"
 
 
 def test_what_is_searched_are_options_and_within_their_bounds() -> None:
-    for values in ({path: low for path, (low, _) in RANGES.items()}, {path: high for path, (_, high) in RANGES.items()}):
+    for end in (0, 1):
+        values = {path: each[end] for path, each in PLAN_SPACE.items()}
         table = changed(Plan(), values).table()
         assert all(table[path.split(".")[0]][path.split(".")[1]] == value for path, value in values.items())
     assert changed(Plan(), {}) == read_table({})
 
 
-def test_the_judging_arms_are_nobody_else_s() -> None:
-    from agents.learning.episodes import SEEDS_EACH
-    from agents.sets import FIRST_SEED
+def test_the_arms_of_training_development_search_and_evaluation_are_apart() -> None:
+    assert 50 * SEEDS_EACH < DEVELOPMENT_SEED  # of dozens of training seeds none comes there
+    assert DEVELOPMENT_SEED + judge.SEEDS_EACH < SEARCH_SEED
+    assert SEARCH_SEED + 1000 * judge.SEEDS_EACH < FIRST_SEED
 
-    assert JUDGES_SEED + JUDGES_COUNT <= FIRST_SEED
-    assert 50 * SEEDS_EACH < JUDGES_SEED  # of dozens of training seeds none comes there
+
+def test_a_law_becomes_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(judge, "CELLS", judge.CELLS[:1])
+    command = ["pd", "--trials", "3", "--arms", "2", "--save", str(tmp_path)]
+    assert main(command) == 0
+    found = TunedController.load(tmp_path / "pd_tuned.toml")
+    assert found.search["score"] <= found.search["score_before"]
+    assert set(found.options) == {"proportional", "derivative"}
 
 
 @pytest.mark.slow
-def test_a_search_goes_on_where_another_stopped(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_search_of_a_policy_goes_on_where_another_stopped(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "tiny.toml").write_text(TINY)
-    command = [str(tmp_path / "tiny.toml"), "--storage", str(tmp_path / "search.journal"), "--trials", "2", "--actions", "20"]
-    assert main(command) == 0
-    assert main(command) == 0
-    assert "best of 4" in capsys.readouterr().out
+    command = [str(tmp_path / "tiny.toml"), "--actions", "20", "--arms", "2", "--journal", str(tmp_path / "search.journal")]
+    assert main([*command, "--trials", "1"]) == 0
+    assert main([*command, "--trials", "2"]) == 0
+    assert "2 of 2" in capsys.readouterr().err
 
 
-def test_a_bad_storage_is_refused_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "tiny.toml").write_text(TINY)
-    assert main([str(tmp_path / "tiny.toml"), "--storage", str(tmp_path / "none" / "a.journal")]) == 2
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        (["pdd"], "did you mean 'pd'"),
+        (["pd", "--trials", "0"], "trial"),
+        (["pd", "--arm", "thesys"], "thesis"),
+        (["vibration_dual", "--arm", "cu-rigid"], "strain"),
+        (["pd", "--arm", "emps"], "motor_speed"),
+        (["pd", "--journal", "none/a.journal"], "no folder"),
+        (["none.toml"], "none.toml"),
+    ],
+)
+def test_bad_arguments_give_one_line(arguments: list[str], word: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(arguments) == 2
     error = capsys.readouterr().err
-    assert "no folder" in error
+    assert word in error
     assert error.count("\n") == 1

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib.util
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +13,12 @@ from controllers.loop import INTERVAL
 from flexarm_env.arm import Arm
 from flexarm_env.controllers import CONTROLLERS, make_controller
 from flexarm_env.errors import InputError
+
+#: Those that can be made with what is installed.
+NAMES = [name for name in CONTROLLERS if importlib.util.find_spec("daqp") or not name.startswith("mpc")]
+#: Laws that work without a gage, and those that weigh the payload by it.
+WITHOUT_GAGE = ("pd", "pd_rate_limited", "shaped_zv", "shaped_zvd", "lqg", "pid_compensated")
+WEIGH = ("lqg_scheduled", "mpc")
 
 ARMS, SAMPLES = 7, 60
 
@@ -23,7 +31,7 @@ def observations(count=ARMS, samples=SAMPLES):
     return np.cumsum(steps, axis=0)
 
 
-@pytest.mark.parametrize("name", CONTROLLERS)
+@pytest.mark.parametrize("name", NAMES)
 def test_a_batch_gives_the_bits_of_each_arm_alone(fine, name):
     controller, seen = make_controller(name, fine, INTERVAL), observations()
     controller.reset(ARMS)
@@ -35,7 +43,7 @@ def test_a_batch_gives_the_bits_of_each_arm_alone(fine, name):
         assert alone.tobytes() == together[:, place].tobytes()
 
 
-@pytest.mark.parametrize("name", CONTROLLERS)
+@pytest.mark.parametrize("name", NAMES)
 def test_reset_forgets(thesis, name):
     controller, seen = make_controller(name, thesis, INTERVAL), observations()
     runs = []
@@ -45,7 +53,7 @@ def test_reset_forgets(thesis, name):
     assert runs[0].tobytes() == runs[1].tobytes()
 
 
-@pytest.mark.parametrize("name", CONTROLLERS)
+@pytest.mark.parametrize("name", NAMES)
 def test_a_missing_reading_counts_as_the_last_one(thesis, name):
     controller, seen = make_controller(name, thesis, INTERVAL), observations()
     seen[20:23, 2, :4] = [np.nan, np.inf, -np.inf, np.nan]
@@ -59,7 +67,7 @@ def test_a_missing_reading_counts_as_the_last_one(thesis, name):
     np.testing.assert_array_equal(runs[0], runs[1])
 
 
-@pytest.mark.parametrize("name", CONTROLLERS)
+@pytest.mark.parametrize("name", NAMES)
 def test_commands_and_actions_keep_to_the_limit(fine, name):
     controller = make_controller(name, fine, INTERVAL)
     controller.reset(ARMS)
@@ -71,7 +79,7 @@ def test_commands_and_actions_keep_to_the_limit(fine, name):
     np.testing.assert_array_equal(actions, (commands / 5.0)[..., None].astype(np.float32))
 
 
-@pytest.mark.parametrize("name", CONTROLLERS)
+@pytest.mark.parametrize("name", NAMES)
 def test_signals_are_found_by_name(thesis, name):
     order = ["strain_base", "motor_speed", "strain_mid", "arm_angle"]
     other = replace(thesis, sensors={signal: thesis.sensors[signal] for signal in order})
@@ -84,11 +92,11 @@ def test_signals_are_found_by_name(thesis, name):
     np.testing.assert_allclose(*runs, atol=1e-8)
 
 
-@pytest.mark.parametrize("name", CONTROLLERS)
+@pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("signal", ["arm_angle", "motor_speed", "strain"])
 def test_a_missing_signal_is_said_in_one_line(thesis, name, signal):
     less = replace(thesis, sensors={s: table for s, table in thesis.sensors.items() if not s.startswith(signal)})
-    if signal == "strain" and name in ("pd", "pd_rate_limited", "shaped_zv", "shaped_zvd", "lqg"):
+    if signal == "strain" and name.removesuffix("_tuned") in WITHOUT_GAGE:
         make_controller(name, less, INTERVAL).reset()
         return
     with pytest.raises(InputError, match=signal) as error:
@@ -96,7 +104,7 @@ def test_a_missing_signal_is_said_in_one_line(thesis, name, signal):
     assert "\n" not in str(error.value)
 
 
-@pytest.mark.parametrize("name", CONTROLLERS)
+@pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("shipped", ["cu-flexible", "cu-rigid", "emps"])
 def test_other_arms_are_driven_or_refused(name, shipped):
     arm = Arm.load(shipped)
@@ -104,7 +112,7 @@ def test_other_arms_are_driven_or_refused(name, shipped):
     lacks = None
     if "motor_speed" not in arm.signals:
         lacks = "motor_speed"
-    elif not gages and name.startswith(("vibration", "lqg_scheduled")):
+    elif not gages and name.startswith(("vibration", *WEIGH)):
         lacks = "strain"
     elif not arm.has("beam") and name.startswith("shaped"):
         lacks = "beam"
@@ -128,7 +136,15 @@ def test_names_and_options_are_checked(thesis):
 
 @pytest.mark.parametrize(
     ("name", "options"),
-    [("pd_rate_limited", {"rate": 0.0}), ("vibration_dual", {"delay": -1.0}), ("shaped_zv", {"mode": "free"})],
+    [
+        ("pd_rate_limited", {"rate": 0.0}),
+        ("vibration_dual", {"delay": -1.0}),
+        ("shaped_zv", {"mode": "free"}),
+        ("lqg", {"design": {"angel": 0.1}}),
+        ("lqg", {"design": {"angle": 0.0}}),
+        ("lqg", {"design": 3.0}),
+        ("pid_compensated", {"design": {"bandwidth": float("nan")}}),
+    ],
 )
 def test_bad_options_are_refused(thesis, name, options):
     with pytest.raises(InputError):
@@ -152,3 +168,10 @@ def test_bad_use_is_refused(thesis):
     assert unlimited.act(np.array([0.0, 0.0, 0.0, 0.0, 10.0])) == pytest.approx(25.308)
     with pytest.raises(InputError, match="limit"):
         unlimited.action(np.zeros(5))
+
+
+def test_without_its_solver_mpc_is_refused_in_one_line(thesis, monkeypatch):
+    monkeypatch.setitem(sys.modules, "daqp", None)
+    with pytest.raises(InputError, match=r"flexarm-env\[control\]") as error:
+        make_controller("mpc", thesis, INTERVAL)
+    assert "\n" not in str(error.value)

@@ -7,10 +7,10 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from agents.measures import Trajectories
-from agents.sets import FIRST_SEED, ArmSet
 from flexarm_env.arm import Arm
 from flexarm_env.tasks import Task
+from flexarm_env.trials.measures import Trajectories
+from flexarm_env.trials.sets import FIRST_SEED, ArmSet
 from flexarm_env.vector_env import FlexArmVectorEnv
 
 
@@ -35,11 +35,13 @@ def roll_out(
         arm: the nominal one.
         arms: set from which they are drawn.
         count: of arms.
-        rate: control steps per second [Hz].
+        rate: usual control steps per second [Hz]; the set's share of them are made, and the agent has to be made for those.
         first_seed: of the first arm; the evaluation's by default.
     """
-    envs = FlexArmVectorEnv(count, task, arm, control_rate=rate, physical=True, **arms.arguments(arm))
+    rate = arms.rate_share * rate
+    envs = FlexArmVectorEnv(count, task, arms.machine(arm), control_rate=rate, physical=True, **arms.arguments(arm))
     observations, _ = envs.reset(seed=first_seed)
+    lost = [list(arm.signals).index(signal) for signal in arms.lost if signal in arm.signals]
     agent.reset(count)
     batch, steps = envs.batch, envs.max_episode_steps
     length = arm.constants.get("beam", {}).get("length", 1.0)
@@ -51,6 +53,7 @@ def roll_out(
     for k in range(steps):
         # the target of this sample: at its end the next one may begin
         target[k] = seen["target"]
+        observations[:, lost] = 0.0
         observations, _, terminated, _, _ = envs.step(agent.action(observations))
         failed |= terminated
         seen = batch.info()

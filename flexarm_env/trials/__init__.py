@@ -1,0 +1,1 @@
+"""Controllers and policies at work: sets of arms, one episode each, and measures of it."""

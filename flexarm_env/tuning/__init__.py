@@ -1,0 +1,1 @@
+"""Search for a controller's options, and the margins of its loop."""
