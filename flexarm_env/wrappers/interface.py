@@ -24,6 +24,8 @@ FINE_SHARE = 0.01
 FINE_STATE = {"hub": 0.003, "hub_rate": 0.03, "tip": 0.001, "tip_rate": 0.01, "friction": 0.1}
 #: Features are divided by this, so that most are within ±2.
 SPREAD = 3.0
+#: Largest feature: far beyond what any reading or estimate gives, and finite, as checkers of environments ask for.
+LARGEST_FEATURE = 20.0
 PAYLOAD_SCALE = 0.15
 
 
@@ -105,7 +107,8 @@ class PolicyInterface:
             found += self._estimates(self.estimator)
         if self.base:
             found += [self.wanted[:, None], self.last]
-        return np.concatenate(found, axis=1, dtype=np.float32)
+        features = np.concatenate(found, axis=1, dtype=np.float32)
+        return np.clip(features, -LARGEST_FEATURE, LARGEST_FEATURE)
 
     def _estimates(self, estimator: Estimator) -> list[Floats]:
         model, moving = estimator.model, self.state[:, :-1]

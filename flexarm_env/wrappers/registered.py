@@ -51,6 +51,7 @@ def roomy(task: Task) -> Task:
 
 def shaped(
     task: Task,
+    /,
     arm: ArmLike = "thesis",
     interface: Mapping[str, Any] | None = None,
     reward: Mapping[str, Any] | None = None,
@@ -74,6 +75,7 @@ def shaped(
 
 def shaped_vector(
     task: Task,
+    /,
     num_envs: int = 1,
     arm: ArmLike = "thesis",
     interface: Mapping[str, Any] | None = None,

@@ -14,7 +14,7 @@ from flexarm_env.env.batch import Batch
 from flexarm_env.env.setup import Setup
 from flexarm_env.env.state import State
 from flexarm_env.errors import InputError
-from flexarm_env.wrappers.interface import PolicyInterface
+from flexarm_env.wrappers.interface import LARGEST_FEATURE, PolicyInterface
 from flexarm_env.wrappers.options import InterfaceOptions, RewardOptions, read_options
 from flexarm_env.wrappers.reward import ShapedReward
 
@@ -60,7 +60,7 @@ class Shaping:
         self.reward = None if reward is None else ShapedReward(read(RewardOptions, reward), setup, batch)
         self.count, self.repeat = batch.count, options.repeat
         self.steps, self.step_number = max(setup.samples // options.repeat, 1), 0
-        self.observation_space = spaces.Box(-np.inf, np.inf, (self.interface.size,), np.float32)
+        self.observation_space = spaces.Box(-LARGEST_FEATURE, LARGEST_FEATURE, (self.interface.size,), np.float32)
         self.action_space = spaces.Box(-1.0, 1.0, (options.actions,), np.float32)
 
     def start(self, observations: Array, share: float = 1.0) -> NDArray[np.float32]:
