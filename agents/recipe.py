@@ -133,6 +133,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             if not place.is_file():
                 place.write_text(json.dumps(train(name, seed)) + "\n", encoding="utf-8")
                 print(f"\n{place}")
+    from agents.recipe_report import write_report
+
+    write_report(asked.save, {name: recipe.meaning for name, recipe in RECIPES.items()})
     return 0
 
 
