@@ -75,8 +75,10 @@ def wanted() -> list[tuple[str, str | None]]:
     return [("nominal", None), ("randomised", None), *(("corrected", case) for case in CASES)]
 
 
-def make(folder: Path, jobs: int, say: Callable[[str], None], policies: bool = True) -> None:
-    """Make the missing diagnoses, controllers and, unless they are left out, policies."""
+def make(folder: Path, jobs: int, say: Callable[[str], None]) -> None:
+    """Make the missing diagnoses and policies."""
+    from agents.train import one_run
+
     for case in CASES:
         if not (folder / "arms" / f"{case}.toml").is_file():
             say(f"diagnosing {case}")
@@ -86,14 +88,6 @@ def make(folder: Path, jobs: int, say: Callable[[str], None], policies: bool = T
             if not tuned_place(folder, law, kind).is_file():
                 say(f"tuning {law} on {kind}")
                 retune(law, arm, tuned_place(folder, law, kind))
-    if policies:
-        train_missing(folder)
-
-
-def train_missing(folder: Path) -> None:
-    """Train the missing policies."""
-    from agents.train import one_run
-
     most = max(plan_of(kind, case, folder)[1].seeds for kind, case in wanted())
     # seed by seed, so that a stopped run leaves equally many of each kind
     for seed in range(most):
@@ -109,13 +103,11 @@ def policies_of(folder: Path, kind: str, case: str) -> list[Path]:
     return [path for seed in range(plan.seeds) if (path := place_of(folder / "weights", name, seed)).is_file()]
 
 
-def evaluate(
-    folder: Path, case: str, count: int, say: Callable[[str], None], policies: bool = True
-) -> dict[str, dict[str, np.ndarray]]:
-    """Evaluate all controllers and, unless they are left out, policies on a machine: each measure (runs, episodes)."""
+def evaluate(folder: Path, case: str, count: int, say: Callable[[str], None]) -> dict[str, dict[str, np.ndarray]]:
+    """Evaluate all policies and controllers on a machine: each measure (runs, episodes)."""
     settings, task = CASES[case][0], TASKS["slew"]
     agents: dict[str, list[Any]] = {}
-    for kind in PLANS if policies else ():
+    for kind in PLANS:
         agents[f"policy, {kind}"] = [Artefact.load(path).agent() for path in policies_of(folder, kind, case)]
     agents |= controllers_of(folder, case)
     found = {}
@@ -127,18 +119,10 @@ def evaluate(
     return found
 
 
-def made_cases(folder: Path, controllers: bool) -> list[str]:
-    """List the cases that have a corrected arm and, unless only controllers are wanted, policies of each kind."""
-    if controllers:
-        return [case for case in CASES if (folder / "arms" / f"{case}.toml").is_file()]
-    return [case for case in CASES if all(policies_of(folder, kind, case) for kind in PLANS)]
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Evaluate the stored policies, after making missing ones with --make, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.sim_to_rig", description=__doc__.partition("\n")[0])
     parser.add_argument("--make", action="store_true", help="first diagnose and train what is not there; stopped, it goes on")
-    parser.add_argument("--controllers", action="store_true", help="controllers only; the results are controllers.md and .json")
     parser.add_argument("--count", type=int, default=20, help="episodes on each machine; 20 by default")
     parser.add_argument("--jobs", type=int, default=2, help="processes of a diagnosis; 2 by default")
     parser.add_argument("--save", type=Path, default=FOLDER, help="folder of arms, policies and results; results/sim_to_rig")
@@ -152,12 +136,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if asked.count < 1 or asked.jobs < 1:
             raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
         if asked.make:
-            make(asked.save, asked.jobs, say, not asked.controllers)
-        there = made_cases(asked.save, asked.controllers)
+            make(asked.save, asked.jobs, say)
+        there = [case for case in CASES if all(policies_of(asked.save, kind, case) for kind in PLANS)]
         if not there:
-            what = "corrected arms" if asked.controllers else "policies"
-            raise InputError(f"no {what} in {asked.save}; add --make to diagnose, tune and train")
-        values = {case: evaluate(asked.save, case, asked.count, say, not asked.controllers) for case in there}
+            raise InputError(f"no policies in {asked.save}; add --make to diagnose and train")
+        values = {case: evaluate(asked.save, case, asked.count, say) for case in there}
     except InputError as error:
         print(error, file=sys.stderr)
         return 2
@@ -165,7 +148,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("\nstopped; the same command goes on", file=sys.stderr)
         return 130
     result = {
-        "command": f"python -m agents.sim_to_rig{' --controllers' * asked.controllers} --count {asked.count}",
+        "command": f"python -m agents.sim_to_rig --count {asked.count}",
         "version": __version__,
         "commit": commit(),
         "seed": FIRST_SEED,
@@ -175,10 +158,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "not_made": [case for case in CASES if case not in there],
         "cases": {case: verdict_of(found) for case, found in values.items()},
     }
-    place = asked.save / ("controllers.md" if asked.controllers else "sim_to_rig.md")
-    write_whole(place.with_suffix(".json"), json.dumps(result, indent=1, ensure_ascii=False) + "\n")
-    write_whole(place, report_of(result))
-    print(f"\n{place}: {result['seconds']} s")
+    write_whole(asked.save / "sim_to_rig.json", json.dumps(result, indent=1, ensure_ascii=False) + "\n")
+    write_whole(asked.save / "sim_to_rig.md", report_of(result))
+    print(f"\n{asked.save / 'sim_to_rig.md'}: {result['seconds']} s")
     return 0
 
 

@@ -119,6 +119,47 @@ def times_words(numbers: str) -> str:
     )
 
 
+def tuned_table(_: str) -> str:
+    """Tabulate the shipped tuned controllers: score and margins, before and after."""
+    from flexarm_env.arm import Arm
+    from flexarm_env.controllers.tuned import shipped_controllers
+    from flexarm_env.tuning.search import measured_margins
+
+    def three(margins) -> list[str]:
+        if not margins:
+            return ["none"] * 3
+        return [f"{margins['gain']:.2f}", f"{margins['phase']:.0f}", f"{1e3 * margins['delay']:.1f}"]
+
+    lines = [
+        "| law | score: own | tuned | gain × : own | tuned | phase [°]: own | tuned | dead time [ms]: own | tuned |",
+        "|---|" + "---:|" * 8,
+    ]
+    for each in shipped_controllers().values():
+        before = three(measured_margins(each.controller, Arm.load(each.arm), {}))
+        pairs = [cell for pair in zip(before, three(each.margins), strict=True) for cell in pair]
+        scores = [f"{each.search[key]:.2f}" for key in ("score_before", "score")]
+        lines.append(f"| `{each.controller}` | " + " | ".join([*scores, *pairs]) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def robustness_table(numbers: str) -> str:
+    """Tabulate the share of arms that do not settle, and the mean settling time, for the tuned laws and the policies."""
+    result = json.loads(numbers)
+    shown = [name for name in result["cells"]["randomised"] if name.endswith("_tuned") or name in result["policies"]]
+    lines = [
+        f"{result['arms']} arms in each set, seed {result['seed']}: arms that do not settle [%], mean settling time [s].",
+        "",
+        "| | " + " | ".join(result["cells"]) + " |",
+        "|---|" + "---:|" * len(result["cells"]),
+    ]
+    for name in shown:
+        cells = [each[name] for each in result["cells"].values()]
+        texts = [f"{c['unsettled']['mean']['value']:.0f}, {c['settling_time']['mean']['value']:.2f}" for c in cells]
+        runs = f", n = {cells[0]['runs']}" if name in result["policies"] else ""
+        lines.append(f"| `{name}`{runs} | " + " | ".join(texts) + " |")
+    return "\n".join(lines) + "\n"
+
+
 @dataclass(frozen=True)
 class Table:
     """A table of a document: its name in the comments, the file of its numbers, and the function that writes it."""
@@ -140,6 +181,8 @@ class Table:
 TABLES = (
     Table("demo", README, RESULTS / "demo" / "demo.json", demo_table),
     Table("baselines", README, RESULTS / "baselines" / "baselines.json", baselines_table),
+    Table("tuned", PROJECT / "docs" / "controllers.md", RESULTS / "robustness" / "robustness.json", tuned_table),
+    Table("robustness", PROJECT / "docs" / "controllers.md", RESULTS / "robustness" / "robustness.json", robustness_table),
     Table("hidden-effects", README, HIDDEN / "table.json", hidden_effects_words),
     Table("hidden-effects", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.md", hidden_effects_table),
     Table("methods", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.json", methods_table),

@@ -241,7 +241,7 @@ def tune(
         Path | None, typer.Option(metavar="FILE.toml", help="A tuned controller to start from, such as one for the nominal arm.")
     ] = None,
     save: Annotated[Path | None, typer.Option(metavar="FILE.toml", help="Write the tuned controller.")] = None,
-    trials: Annotated[int, typer.Option(min=1, help="Values to try.")] = 60,
+    trials: Annotated[int, typer.Option(min=1, help="Values to try.")] = 120,
     arms: Annotated[int, typer.Option(min=1, max=1000, help="Arms in each cell of a trial.")] = 12,
     journal: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Keep the trials there: after a stop the same command goes on.")

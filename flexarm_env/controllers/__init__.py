@@ -83,10 +83,6 @@ def tuned_recipe(tuned: TunedController) -> Recipe:
     return Recipe(recipe.build, {**recipe.options, **tuned.options}, found, for_thesis_drive=True)
 
 
-#: As printed, and as a search has tuned them.
-CONTROLLERS |= {name: tuned_recipe(tuned) for name, tuned in shipped_controllers().items()}
-
-
 def make_controller(name: str, arm: Arm, interval: float, **options: Any) -> Controller:
     """Make a controller by its name.
 
@@ -133,5 +129,8 @@ def _options(build: type[Controller]) -> list[str]:
     hands_on = any(p.kind is inspect.Parameter.VAR_KEYWORD for p in parameters)
     return own + (_options(build.__mro__[1]) if hands_on else [])
 
+
+# the laws themselves stand above: a tuned one refers to its law
+CONTROLLERS |= {name: tuned_recipe(tuned) for name, tuned in shipped_controllers().items()}
 
 __all__ = ["CONTROLLERS", "Controller", "Recipe", "make_controller", "tuned_recipe"]

@@ -36,7 +36,7 @@ class Budget:
         seed: of values and arms.
     """
 
-    trials: int = 60
+    trials: int = 120
     arms: int = 12
     seed: int = 0
 
