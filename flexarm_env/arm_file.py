@@ -26,10 +26,10 @@ AUTO = "auto"
 TOP = ("name", "description", "fixed", *SECTIONS, "sensors", "effects", "columns", "controller", "fitted", "origin")
 
 
-def arm_folders() -> list[Path]:
-    """List the folders of the shipped arms: inside an installed package, or beside it in a source tree."""
+def config_folders(kind: str) -> list[Path]:
+    """List the folders of shipped "arms" or "agents": inside an installed package, or beside it in a source tree."""
     here = Path(__file__).parent
-    return [here / "configs" / "arms", here.parent / "configs" / "arms"]
+    return [here / "configs" / kind, here.parent / "configs" / kind]
 
 
 def shipped_arms() -> dict[str, Path]:
@@ -39,7 +39,7 @@ def shipped_arms() -> dict[str, Path]:
         >>> sorted(shipped_arms())
         ['cu-flexible', 'cu-rigid', 'emps', 'thesis', 'thesis-fem']
     """
-    return {path.stem: path for folder in arm_folders() for path in sorted(folder.glob("*.toml"))}
+    return {path.stem: path for folder in config_folders("arms") for path in sorted(folder.glob("*.toml"))}
 
 
 def read_arm(kind: type[Arm], source: str | Path, known: Catalogue) -> Arm:

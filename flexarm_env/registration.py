@@ -8,11 +8,19 @@ from gymnasium.envs.registration import register, registry
 
 from flexarm_env.tasks import RANDOM_PAYLOAD, TASKS
 
+#: Lowest and highest target of the "-Goal" variants [rad].
+GOALS = (-2.0, 2.0)
 #: Arguments of the variants of every task's environment, by the word in their ids.
-VARIANTS: dict[str, dict[str, Any]] = {"": {}, "-Random": {"randomise": {"payload.mass": RANDOM_PAYLOAD}}}
+VARIANTS: dict[str, dict[str, Any]] = {
+    "": {},
+    "-Random": {"randomise": {"payload.mass": RANDOM_PAYLOAD}},
+    "-Goal": {"goals": GOALS},
+}
 
-#: Task and variant of every id.
+#: Task and variant of every id with the rig's readings as observations.
 IDS = {f"FlexArm/{task.title}{variant}-v0": (task, variant) for task in TASKS.values() for variant in VARIANTS}
+#: Task of every id with the observation, the action and the reward of the shipped policies.
+SHAPED = {f"FlexArm/{task.title}-Shaped-v0": task for task in TASKS.values()}
 
 
 def register_all() -> None:
@@ -27,4 +35,11 @@ def register_all() -> None:
                 entry_point=f"flexarm_env.env:{task.title}Env",
                 vector_entry_point=f"flexarm_env.vector_env:{task.title}VectorEnv",
                 kwargs=dict(VARIANTS[variant]),
+            )
+    for id, task in SHAPED.items():
+        if id not in registry:
+            register(
+                id,
+                entry_point=f"flexarm_env.wrappers.registered:{task.title}Shaped",
+                vector_entry_point=f"flexarm_env.wrappers.registered:{task.title}ShapedVector",
             )

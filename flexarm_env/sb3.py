@@ -12,9 +12,9 @@ from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
 from flexarm_env.env.infos import Infos, Step
-from flexarm_env.env.layout import SAMPLE_COUNT
 from flexarm_env.errors import InputError
 from flexarm_env.vector_env import FlexArmVectorEnv
+from flexarm_env.wrappers import ShapedVector
 
 try:
     from stable_baselines3.common.vec_env import VecEnv
@@ -51,27 +51,26 @@ def make_vec(id: str, num_envs: int = 1, seed: int | None = None, **arguments: A
     made = gym.make_vec(
         id, num_envs, vectorization_mode="vector_entry_point", autoreset_mode=AutoresetMode.SAME_STEP, **arguments
     )
-    envs = made.unwrapped
-    assert isinstance(envs, FlexArmVectorEnv)
-    vec = FlexArmVecEnv(envs)
+    assert isinstance(made, FlexArmVectorEnv | ShapedVector)
+    vec = FlexArmVecEnv(made)
     vec.seed(seed)
     return vec
 
 
 class FlexArmVecEnv(VecEnv):
-    """A FlexArmVectorEnv that starts the next episode in the step that ends one.
+    """Many arms, shaped or not, whose next episode starts in the step that ends one.
 
     Infos have the keys of the single environment's. At the end of an episode they also hold `terminal_observation`,
     `TimeLimit.truncated` and the `episode` statistics of a Monitor. `envs.batch.info()` has the true state of all arms at once.
     """
 
-    def __init__(self, envs: FlexArmVectorEnv) -> None:
+    def __init__(self, envs: FlexArmVectorEnv | ShapedVector) -> None:
         self.envs = envs
         super().__init__(envs.num_envs, envs.single_observation_space, envs.single_action_space)
         self.metadata |= {"render_fps": envs.metadata["render_fps"]}
         self.returns = np.zeros(envs.num_envs)
         self.began = time.perf_counter()
-        self.actions: Array = np.zeros((envs.num_envs, 1))
+        self.actions: Array = np.zeros(envs.action_space.shape or ())
         self.next_seed: int | None = None
 
     def __getstate__(self) -> dict[str, Any]:
@@ -108,29 +107,31 @@ class FlexArmVecEnv(VecEnv):
         return {name: [each[name] for each in self._options] for name in names.pop()} or None
 
     def step_async(self, actions: Array) -> None:
-        """Set the actions (arms, 1) of the next step."""
+        """Set the actions (arms, numbers) of the next step."""
         self.actions = actions
 
     def step_wait(self) -> tuple[Array, Array, Array, list[dict[str, Any]]]:
         """Apply the actions; return observations, rewards, ends of episodes, and infos."""
         envs = self.envs
         rewards, terminated, truncated = envs.move(self.actions)
-        done, last = envs.over, envs.batch.observations
+        done, last = envs.over, envs.observations
         self.returns += rewards
         infos = Infos(Step(GOING_ON, envs.batch.outcome.copy(), envs.batch.info_rows, envs.batch.info_of))
         ended = np.flatnonzero(done).tolist()
+        lengths = envs.lengths if ended else ()
         elapsed = round(time.perf_counter() - self.began, 6)
         for i in ended:
             infos[i] |= {
                 "terminal_observation": last[i].copy(),
                 "TimeLimit.truncated": bool(truncated[i] and not terminated[i]),
-                "episode": {"r": float(self.returns[i]), "l": int(envs.batch.outcome[SAMPLE_COUNT, i]), "t": elapsed},
+                "episode": {"r": float(self.returns[i]), "l": int(lengths[i]), "t": elapsed},
             }
             self.returns[i] = 0.0
-        envs.restart()
+        if ended:
+            envs.restart()
         for i in ended:
             self.reset_infos[i] = envs.batch.info_of(envs.batch.outcome[:, i].tolist())
-        return last.copy(), rewards.astype(np.float32), done, infos  # type: ignore[return-value]
+        return envs.observations.copy(), rewards.astype(np.float32), done, infos  # type: ignore[return-value]
 
     def close(self) -> None:
         """Close the arms' environment."""
@@ -157,4 +158,6 @@ class FlexArmVecEnv(VecEnv):
 
     def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
         """Draw each arm (height, width, 3), or return None for each without a render mode."""
-        return [None] * self.num_envs if self.render_mode is None else list(self.envs.render() or ())
+        if self.render_mode is None:
+            return [None] * self.num_envs
+        return list(self.envs.render() or ())  # type: ignore[arg-type] # a wrapper's may be anything

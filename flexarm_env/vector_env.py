@@ -237,6 +237,16 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         self.over = terminated | truncated
         return rewards, terminated, truncated
 
+    @property
+    def observations(self) -> Array:
+        """Observations after the last step (arms, signals + 1), to be copied."""
+        return self.batch.observations
+
+    @property
+    def lengths(self) -> Array:
+        """Steps since the start of each arm's episode (arms,)."""
+        return self.batch.outcome[SAMPLE_COUNT].astype(np.int64)
+
     def restart(self) -> None:
         """Start the next episode of every arm at the end of one."""
         self.batch.reset(self.every[self.over])
@@ -251,6 +261,10 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         final = {"final_obs": last, "_final_obs": over.copy(), "final_info": self._info(over), "_final_info": over.copy()}
         self.restart()
         return self.batch.observations.copy(), rewards, terminated, truncated, self._info(self.all) | final
+
+    def infos(self) -> dict[str, Any]:
+        """Copy the quantities of the infos of all arms, by name (arms,)."""
+        return self._info(self.all)
 
     def _info(self, mask: Array) -> dict[str, Any]:
         info: dict[str, Any] = self.batch.info()

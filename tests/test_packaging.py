@@ -28,7 +28,7 @@ LAYERS = (
     {"arm", "arm_file", "machine", "plant", "effects", "sensors", "control", "linear", "recordings", "thesis_drive"},
     {"experiments"},
     {"identify", "controllers", "tasks", "render", "env"},
-    {"vector_env", "sb3", "pictures", "registration"},
+    {"vector_env", "sb3", "wrappers", "pictures", "registration"},
     {"trials", "tuning"},
     {"terminal"},
     {"lab", "demo", "thesis"},

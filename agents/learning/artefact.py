@@ -17,7 +17,6 @@ from safetensors.torch import save
 from stable_baselines3.common.policies import BasePolicy
 
 from agents.learning.episodes import RATE
-from agents.learning.interface import PolicyInterface
 from agents.learning.models import TRAINING_ONLY, bare_policy
 from agents.learning.options import Plan
 from agents.learning.plan_file import read_table
@@ -25,6 +24,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.arm_file import arm_text
 from flexarm_env.errors import InputError
 from flexarm_env.files import write_whole
+from flexarm_env.wrappers import PolicyInterface
 
 FORMAT = "flexarm-policy-1"
 LARGEST_FILE = 100_000_000

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,19 +10,23 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
-from agents.learning.interface import PolicyInterface, squeezed
-from agents.learning.options import ArmsOptions, Plan
-from agents.learning.reward import TrainingReward
+from agents.learning.options import Plan
 from flexarm_env.arm import Arm
-from flexarm_env.tasks import TASKS, Task
-from flexarm_env.trials.sets import FIRST_SEED, ArmSet
+from flexarm_env.tasks import TASKS
+from flexarm_env.trials.sets import FIRST_SEED
 from flexarm_env.vector_env import FlexArmVectorEnv
+from flexarm_env.wrappers import ShapedVector
+from flexarm_env.wrappers.arms import arms_of, draws_of
+from flexarm_env.wrappers.interface import squeezed
+from flexarm_env.wrappers.registered import roomy
 
 Array = NDArray[Any]
 
 RATE = 200.0
 #: Seeds of each run: those of training stay below those of evaluation, and no two runs share any.
 SEEDS_EACH = 10_000_000
+#: Delay [s] that is 1 among the critic's privileged inputs.
+LONG_DELAY = 0.01
 #: As FINE in interface.py, for the critic's privileged inputs: angle's error [rad], speed [rad/s], tip [m], its change [m].
 FINE_TRUTH = (0.003, 0.03, 0.001, 0.0001)
 
@@ -44,34 +46,36 @@ class EpisodeVecEnv(VecEnv):
     render_mode = None
 
     def __init__(self, plan: Plan, arm: Arm, seed: int) -> None:
-        roomy = replace(TASKS[plan.task], range=math.inf)
-        arms = training_set(plan.arms)
-        self.envs = FlexArmVectorEnv(plan.at_once, roomy, arm, control_rate=RATE, physical=True, **arms.arguments(arm))
-        self.interface = PolicyInterface(plan.interface, arm, 1.0 / RATE)
-        self.reward = TrainingReward(plan.reward, self.envs)
-        self.repeat, self.steps = plan.interface.repeat, actions_each(TASKS[plan.task], plan.interface.repeat)
+        self.groups = groups_of(plan, arm)
+        first = self.groups[0]
+        self.interface = first.shaping.interface
+        self.repeat, self.steps = plan.interface.repeat, first.shaping.steps
         self.actions_in_all = plan.actions
         self.privileged = plan.interface.privileged and plan.algorithm == "ppo"
-        self.first_seed, self.next_episode = seed * SEEDS_EACH, 0
+        self.first_seed, self.next_episode, self.step_number = seed * SEEDS_EACH, 0, 0
         #: Mean over all arms of the last episodes' returns; None before the first end.
         self.mean_return: float | None = None
-        ranges = len(self.envs.setup.variation.ranges)
+        #: Delay of each arm over LONG_DELAY, beside the constants that are drawn for it.
+        late = np.repeat(plan.arms.delays, [group.num_envs for group in self.groups][: len(plan.arms.delays)])
+        self.delays = late[:, None] / LONG_DELAY if len(late) else np.zeros((plan.at_once, 0))
+        ranges = len(first.arms.setup.variation.ranges) + self.delays.shape[1]
         self.width = self.interface.size + (len(FINE_TRUTH) + ranges if self.privileged else 0)
         super().__init__(plan.at_once, *spaces_of(self.width, plan.interface.actions))
 
     def reset(self) -> Array:
         """Start the next episode of all arms; return the inputs of policy and critic (arms, width)."""
-        count, batch = self.num_envs, self.envs.batch
-        first = self.first_seed + self.next_episode * count % SEEDS_EACH
+        count = self.num_envs
+        seed = self.first_seed + self.next_episode * count % SEEDS_EACH
         share = min(self.next_episode * count * self.steps / self.actions_in_all, 1.0)
         self.next_episode += 1
-        observation, _ = self.envs.reset(seed=first % FIRST_SEED)
-        self.interface.start(count)
-        self.interface.see(observation)
-        self.reward.start(share)
-        self.draws = np.array([batch.draws_of(i) for i in range(count)]).reshape(count, -1)
+        for group in self.groups:
+            group.begin(seed % FIRST_SEED, share)
+            seed += group.num_envs
+        batches = [group.batch for group in self.groups]
+        drawn = np.array([batch.draws_of(i) for batch in batches for i in range(batch.count)]).reshape(count, -1)
+        self.draws = np.concatenate([drawn, self.delays], axis=1)
         self.returns, self.step_number = np.zeros(count), 0
-        self.tip = batch.info()["tip_deflection"]
+        self.tip = self._info("tip_deflection")
         return self._observe()
 
     def step_async(self, actions: Array) -> None:
@@ -80,12 +84,9 @@ class EpisodeVecEnv(VecEnv):
 
     def step_wait(self) -> tuple[Array, Array, Array, list[dict[str, Any]]]:
         """Hold the actions for `repeat` samples; return observations, rewards, ends of episodes, and infos."""
-        rewards = np.zeros(self.num_envs)
-        for _ in range(self.repeat):
-            self.envs.move(self.interface.send(self.actions))
-            self.interface.see(self.envs.batch.observations)
-            rewards += self.reward.sample() / self.repeat
-        rewards += self.reward.command(self.interface.command)
+        places = np.cumsum([group.num_envs for group in self.groups])[:-1]
+        parts = np.split(self.actions, places)
+        rewards = np.concatenate([group.move(part)[0] for group, part in zip(self.groups, parts, strict=True)])
         self.returns += rewards
         self.step_number += 1
         observation, over = self._observe(), self.step_number >= self.steps
@@ -99,18 +100,22 @@ class EpisodeVecEnv(VecEnv):
         return observation, rewards.astype(np.float32), np.full(self.num_envs, over), infos
 
     def _observe(self) -> Array:
-        seen = self.interface.features()
+        seen = np.concatenate([group.observations for group in self.groups])
         if not self.privileged:
             return seen
-        info, before = self.envs.batch.info(), self.tip
-        self.tip = info["tip_deflection"]
-        truth = (info["target"] - info["hub_angle"], info["hub_speed"], self.tip, self.tip - before)
+        before, self.tip = self.tip, self._info("tip_deflection")
+        truth = (self._info("target") - self._info("hub_angle"), self._info("hub_speed"), self.tip, self.tip - before)
         hidden = [squeezed(values, fine)[:, None] for values, fine in zip(truth, FINE_TRUTH, strict=True)]
         return np.concatenate([seen, *hidden, self.draws], axis=1, dtype=np.float32)
 
+    def _info(self, name: str) -> Array:
+        """Look up a quantity of the infos of all arms (arms,)."""
+        return np.concatenate([group.batch.outcome[group.batch.info_rows[name]] for group in self.groups])
+
     def close(self) -> None:
-        """Close the arms' environment."""
-        self.envs.close()
+        """Close the arms' environments."""
+        for group in self.groups:
+            group.close()
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
         """Return an attribute, once for each arm."""
@@ -138,12 +143,17 @@ def spaces_of(width: int, actions: int) -> tuple[spaces.Box[Any], spaces.Box[Any
     return spaces.Box(-np.inf, np.inf, (width,), np.float32), spaces.Box(-1.0, 1.0, (actions,), np.float32)
 
 
-def actions_each(task: Task, repeat: int) -> int:
-    """Count the actions of an episode."""
-    return max(round(task.duration * RATE) // repeat, 1)
-
-
-def training_set(options: ArmsOptions) -> ArmSet:
-    """Make the set of arms for training; those of flexarm_env/trials/sets.py are for evaluation."""
-    disturb = {"tap_rate": options.tap_rate, "dropout_rate": options.dropout_rate}
-    return ArmSet("training", "arms to train on", options.payload, options.constants, options.friction, disturb)
+def groups_of(plan: Plan, arm: Arm) -> list[ShapedVector]:
+    """Make the arms of a plan, those with the same delay together."""
+    machines = arms_of(plan.arms, arm)
+    counts = [len(part) for part in np.array_split(np.arange(plan.at_once), len(machines))]
+    return [
+        ShapedVector(
+            FlexArmVectorEnv(
+                count, roomy(TASKS[plan.task]), machine, prior=arm, control_rate=RATE, physical=True, **draws_of(plan.arms, arm)
+            ),
+            plan.interface,
+            plan.reward,
+        )
+        for machine, count in zip(machines, counts, strict=True)
+    ]

@@ -2,71 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from flexarm_env.controllers import CONTROLLERS
 from flexarm_env.tasks import TASKS
+from flexarm_env.wrappers.options import ArmsOptions, InterfaceOptions, RewardOptions, option
 
 ALGORITHMS = ("ppo", "recurrent_ppo", "sac", "tqc")
-
-
-def option(default: Any, meaning: str, least: float = -math.inf, most: float = math.inf, allowed: Any = None) -> Any:
-    """Make a field of a section: its default, its meaning for a person, and its bounds."""
-    return field(default=default, metadata={"meaning": meaning, "least": least, "most": most, "allowed": allowed})
-
-
-@dataclass(frozen=True)
-class ArmsOptions:
-    """The arms of training, drawn anew for each episode; the nominal arm alone where all are 0."""
-
-    payload: bool = option(True, "whether a tip mass of 0 to 0.3 kg is drawn")
-    constants: float = option(0.1, "share by which torque constant, inertia, mass and stiffness differ", 0.0, 0.9)
-    friction: float = option(0.2, "share by which friction differs", 0.0, 0.9)
-    tap_rate: float = option(0.2, "taps on the hub per second, up to 0.5 Nm for 20 ms", 0.0, 50.0)
-    dropout_rate: float = option(0.5, "drop-outs of a sensor per second, 50 ms each", 0.0, 50.0)
-
-
-@dataclass(frozen=True)
-class InterfaceOptions:
-    """Features of the policy and effect of its action."""
-
-    lags: tuple[int, ...] = option((0, 2, 4, 8, 16, 32), "how many samples of 5 ms ago the shown readings are", 0, 2000)
-    command_lags: tuple[int, ...] = option((0, 2, 4, 8), "how many samples of 5 ms ago the shown commands were sent", 0, 2000)
-    averages: tuple[float, ...] = option((), "also readings averaged with these fading memories [s]", 0.005, 10.0)
-    estimate: bool = option(True, "also show a Kalman filter's angle, bending, speeds and friction, and the payload estimate")
-    base: str = option("none", "classical controller to whose command the action is added", allowed=("none", *CONTROLLERS))
-    authority: float = option(1.0, "command at action 1, as a share of the drive's limit", 0.001, 2.0)
-    repeat: int = option(2, "samples of 5 ms for which an action is held", 1, 100)
-    pulse: float = option(
-        0.0, "as authority, of a second action that is sent in the first of these samples only; 0: none", 0.0, 2.0
-    )
-    privileged: bool = option(True, "PPO's critic alone also sees the true state and the drawn constants, in training only")
-
-    @property
-    def actions(self) -> int:
-        """Count the numbers of an action."""
-        return 2 if self.pulse else 1
-
-
-@dataclass(frozen=True)
-class RewardOptions:
-    """Reward of training; evaluation has measures of its own.
-
-    Each sample costs the tip's error and the vibration, both on a scale where halving them is worth the same whether they
-    are large or small: log(1 + size / scale), over that of 100° or 3 V. The vibration's size is that of the strain now and an
-    eighth of a second before, in quadrature: its amplitude at 2 Hz, and no more than that for the faster vibrations.
-    """
-
-    tip_scale: float = option(0.2, "error of the tip [deg] below which less is hardly worth anything", 1e-4, 100.0)
-    strain_scale: float = option(0.01, "vibration at the base gage [V] below which less is hardly worth anything", 1e-5, 10.0)
-    vibration: float = option(0.5, "weight of the vibration; the tip's error has 1", 0.0, 100.0)
-    rise: float = option(1.0, "factor by which that weight has grown at the end; linear between", 0.0, 100.0)
-    near: float = option(0.0, "vibration costs only near the target: error [deg] at which it counts 1/e; 0: everywhere", 0.0, 1e3)
-    distance: float = option(0.0, "weight of the tip's error in rad, on a linear scale", 0.0, 100.0)
-    effort: float = option(0.02, "weight of (command / limit)²", 0.0, 100.0)
-    change: float = option(0.0, "weight of (change of the command / limit)²", 0.0, 100.0)
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,11 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from agents.learning.options import Plan
-from flexarm_env.errors import InputError, did_you_mean
-
-Section = TypeVar("Section")
+from flexarm_env.errors import InputError
+from flexarm_env.wrappers.options import read_options
 
 LARGEST_FILE = 100_000
 
@@ -41,51 +40,7 @@ def read_table(table: Mapping[str, Any]) -> Plan:
     Raises:
         InputError: for a key that does not exist, or a value that is none.
     """
-    return _read(Plan, table, "")
-
-
-def _read(section: type[Section], table: Any, prefix: str) -> Section:
-    if not isinstance(table, Mapping):
-        raise InputError(f"{prefix.rstrip('.')} = {table!r} is not a table; write [{prefix.rstrip('.')}]")
-    known = {entry.name: entry for entry in fields(section)}  # type: ignore[arg-type]
-    found = {}
-    for key, value in table.items():
-        if key not in known:
-            raise InputError(f"unknown key '{prefix}{key}'{did_you_mean(key, known)}")
-        default = getattr(section(), key)
-        if is_dataclass(default):
-            found[key] = _read(type(default), value, f"{prefix}{key}.")
-        else:
-            found[key] = _value(f"{prefix}{key}", value, default, known[key].metadata)
-    return section(**found)
-
-
-def _value(path: str, value: Any, default: Any, rules: Mapping[str, Any]) -> Any:
-    """Convert a value to the type of its default."""
-    if isinstance(default, tuple):
-        if not isinstance(value, list | tuple):
-            raise InputError(f"{path} = {value!r}; give a list such as {list(default)}")
-        return tuple(_number(path, entry, default[0] if default else 0.0, rules) for entry in value)
-    if isinstance(default, bool):
-        if not isinstance(value, bool):
-            raise InputError(f"{path} = {value!r}; give true or false")
-        return value
-    if isinstance(default, str):
-        if not isinstance(value, str):
-            raise InputError(f"{path} = {value!r}; give a text such as '{default}'")
-        if rules["allowed"] is not None and value not in rules["allowed"]:
-            raise InputError(f"{path} = '{value}'{did_you_mean(value, rules['allowed'])}")
-        return value
-    return _number(path, value, default, rules)
-
-
-def _number(path: str, value: Any, default: float, rules: Mapping[str, Any]) -> float:
-    kinds = int if isinstance(default, int) else int | float
-    if isinstance(value, bool) or not isinstance(value, kinds):
-        raise InputError(f"{path} = {value!r}; give a {'whole ' if kinds is int else ''}number")
-    if not rules["least"] <= value <= rules["most"]:
-        raise InputError(f"{path} = {value:g}; allowed are {rules['least']:g} to {rules['most']:g}")
-    return type(default)(value)
+    return read_options(Plan, table)
 
 
 def option_table() -> str:

@@ -15,7 +15,7 @@ from flexarm_env.env.variation import Variation, find_variation
 from flexarm_env.errors import InputError
 from flexarm_env.parameters import INPUTS
 from flexarm_env.pictures import words
-from flexarm_env.registration import IDS, VARIANTS
+from flexarm_env.registration import IDS, SHAPED, VARIANTS
 from flexarm_env.tasks import CONTROL_RATE
 from flexarm_env.terminal import outputs, tables
 
@@ -55,7 +55,7 @@ def _facts(id: str, arm: Arm) -> dict[str, Any]:
     return {
         "task": task.summary,
         "arm": arm.name,
-        "drawn": _ranges(drawn, variation),
+        "drawn": _ranges(drawn, variation) | _goals(VARIANTS[variant].get("goals")),
         "observation": [*arm.signals, "target"],
         "action": {"quantity": arm.input, "limit": setup.arm.constants["drive"]["limit"], "unit": INPUTS[arm.input]},
         "rate": CONTROL_RATE,
@@ -71,6 +71,10 @@ def _ranges(arm: Arm, variation: Variation) -> dict[str, dict[str, Any]]:
     }
 
 
+def _goals(goals: tuple[float, float] | None) -> dict[str, dict[str, Any]]:
+    return {} if goals is None else {"target": {"from": goals[0], "to": goals[1], "unit": "rad"}}
+
+
 def _drawn(ranges: Mapping[str, Mapping[str, Any]]) -> str:
     each = [f"{path} {end['from']:.3g} to {end['to']:.3g} {words.plain_unit(end['unit'])}" for path, end in ranges.items()]
     return ", ".join(each) or words.NOTHING
@@ -84,5 +88,6 @@ def _common(facts: Mapping[str, Any]) -> Text:
         "observation": f"({len(facts['observation'])},): {', '.join(facts['observation'])}",
         "action": f"(1,): {action['quantity']}, from -1 to 1 for ±{action['limit']:g} {action['unit']}",
         "steps": f"{facts['rate']:g} per second",
+        "as trained": f"{', '.join(SHAPED)}: observation, action and reward of the shipped policies",
     }
     return Text("\n".join(f"{name + ':':<13}{line}" for name, line in lines.items()))

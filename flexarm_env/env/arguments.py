@@ -13,6 +13,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.env.setup import Setup
 from flexarm_env.env.variation import Disturbance, Range, find_disturbance, find_variation
 from flexarm_env.errors import InputError, UnknownArgument, did_you_mean
+from flexarm_env.sensors.arm_angle import ArmAngle
 from flexarm_env.tasks import CONTROL_RATE, Task, find_task
 
 #: Name of a shipped arm, path of an arm file, an Arm, or the tables of an arm file.
@@ -26,6 +27,7 @@ class EnvArguments(TypedDict, total=False):
         prior: the model of the arm for controllers; the machine's nominal values by default.
         randomise: values drawn anew for each episode: {"payload.mass": (0.0, 0.3)}, lowest and highest in SI units.
         vary: the same as shares of the arm's own values: {"hub.inertia": 0.1} is ±10 %.
+        goals: lowest and highest target, drawn anew for each episode [rad]; the task's target by default.
         disturb: taps and drop-outs, see Disturbance: {"tap_rate": 0.5, "tap_torque": 0.3, "dropout_rate": 1.0}.
         control_rate: steps per second [Hz]; 200 by default.
         duration: of an episode [s]; the task's by default.
@@ -35,12 +37,15 @@ class EnvArguments(TypedDict, total=False):
     prior: ArmLike | None
     randomise: Mapping[str, Range] | None
     vary: Mapping[str, float] | None
+    goals: Range | None
     disturb: Disturbance | Mapping[str, float] | None
     control_rate: float
     duration: float
     physical: bool
 
 
+#: Largest angle of a goal [rad]: where the target's observation ends.
+LARGEST_GOAL = ArmAngle.range_end()
 #: Names of the arguments of every environment.
 NAMES = ("task", "arm", *EnvArguments.__annotations__, "render_mode")
 
@@ -74,7 +79,27 @@ def make_setup(task: str | Task, arm: ArmLike, given: EnvArguments, further: Ite
     if duration is not None:
         found = dataclasses.replace(found, duration=float(duration))
     drawn, variation = find_variation(find_arm(arm), given.get("randomise"), given.get("vary"))
-    return Setup(found, drawn, variation, find_disturbance(given.get("disturb")), float(rate), bool(physical))
+    return Setup(found, drawn, variation, find_disturbance(given.get("disturb")), float(rate), bool(physical), goals_of(given))
+
+
+def goals_of(given: EnvArguments) -> tuple[float, float] | None:
+    """Read the lowest and highest target of an environment; None for the task's target.
+
+    Raises:
+        InputError: for anything but two finite numbers in order.
+    """
+    goals = given.get("goals")
+    if goals is None:
+        return None
+    try:
+        low, high = (float(value) for value in goals)
+    except (TypeError, ValueError):
+        raise InputError(f"goals = {goals!r}; give two angles [rad], lowest and highest") from None
+    if not -LARGEST_GOAL <= low <= high <= LARGEST_GOAL:
+        raise InputError(
+            f"goals = ({low:g}, {high:g}); give the lowest first, from {-LARGEST_GOAL:.4g} to {LARGEST_GOAL:.4g} rad"
+        )
+    return low, high
 
 
 def find_prior(arm: ArmLike, given: EnvArguments) -> Arm:

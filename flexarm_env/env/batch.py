@@ -198,9 +198,17 @@ class Batch:
         own[at.LENGTH] = drawn.constants.get("beam", {}).get("length", 1.0)
         own[at.COMMAND_PER_TORQUE] = command_per_torque_of(drawn)
         own[at.FIRST_ANGLE] = angle
-        own[at.FIRST_TARGET] = self.outcome[at.TARGET, arm] = angle if setup.task.hold else setup.task.target
+        own[at.FIRST_TARGET] = self.outcome[at.TARGET, arm] = self._target(arm, angle)
         self.history[arm] = self.sensor_output[arm] = self.noiseless_readings[arm, :-TRUTH_SIZE]
         self.kernel.after_reset(self.arena, self.env_offsets, self.rng_keys, self.observations, arm)
+
+    def _target(self, arm: int, angle: float) -> float:
+        """Choose an arm's target [rad], whose hub is at an angle [rad]."""
+        setup = self.setup
+        if setup.goals is not None:
+            low, high = setup.goals
+            return low + float(uniform(self._key(arm, "goal"), 0, 0)) * (high - low)
+        return angle if setup.task.hold else setup.task.target
 
     def _run_up(self, plant: Plant) -> Floats:
         """Compute the state at the start of an episode, after the task's pulse and coast."""

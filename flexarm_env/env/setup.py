@@ -40,6 +40,7 @@ class Setup:
         disturbance: taps and drop-outs.
         rate: control steps per second [Hz].
         physical: whether observations are in physical units; else over typical readings.
+        goals: lowest and highest target, drawn anew for each episode [rad]; None for the task's target.
     """
 
     task: Task
@@ -48,6 +49,7 @@ class Setup:
     disturbance: Disturbance = field(default_factory=Disturbance)
     rate: float = CONTROL_RATE
     physical: bool = False
+    goals: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.rate) and 1.0 <= self.rate <= MOST_RATE):
@@ -70,7 +72,7 @@ class Setup:
             {name: getattr(task, name) for name in (*LEAST, "hold") if name != "duration"},
             [(term.name, term.quantities, task.weight(term)) for term in task.terms],
             [arm.input, arm.constants, arm.sensors, arm.effects],
-            [self.variation.ranges, vars(self.disturbance), self.rate, self.physical],
+            [self.variation.ranges, vars(self.disturbance), self.rate, self.physical, self.goals],
         )
         return f"{task.name}, {arm.name}, {hashlib.sha256(json.dumps(parts, default=_plain).encode()).hexdigest()[:12]}"
 

@@ -7,14 +7,12 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from flexarm_env.arm import Arm
+from flexarm_env.wrappers.arms import drawn_values
 
 #: Seed of the first arm of a set in published figures; training, searches and development use seeds below it.
 FIRST_SEED = 1_000_000_000
 #: The same of the arms on which choices of design are judged, and of those on which a search judges its trials.
 DEVELOPMENT_SEED, SEARCH_SEED = 800_000_000, 900_000_000
-FRICTION = {"viscous": "coefficient", "coulomb": "torque", "stiction": "extra"}
-CONSTANTS = ("drive.torque_constant", "hub.inertia", "beam.mass_per_length", "beam.bending_stiffness")
-PAYLOAD = (0.0, 0.3)
 
 
 @dataclass(frozen=True)
@@ -51,15 +49,7 @@ class ArmSet:
 
     def arguments(self, arm: Arm) -> dict[str, Any]:
         """Make the arguments of an environment with arms drawn from the set."""
-        vary = {path: self.constants for path in CONSTANTS if self.constants and _has(arm, path)}
-        vary |= {f"{name}.{key}": self.friction for name, key in FRICTION.items() if self.friction and name in arm.effects}
-        randomise = {"payload.mass": PAYLOAD} if self.payload and arm.can_have("payload") else {}
-        return {"randomise": randomise, "vary": vary, "disturb": dict(self.disturb)}
-
-
-def _has(arm: Arm, path: str) -> bool:
-    section, key = path.split(".")
-    return arm.constants.get(section, {}).get(key, 0.0) > 0.0
+        return drawn_values(arm, self.payload, self.constants, self.friction) | {"disturb": dict(self.disturb)}
 
 
 SETS = {

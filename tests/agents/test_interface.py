@@ -8,13 +8,12 @@ import pytest
 pytest.importorskip("stable_baselines3")
 
 from agents.learning.episodes import RATE
-from agents.learning.interface import PolicyInterface
-from agents.learning.options import InterfaceOptions
 from flexarm_env import Arm
 from flexarm_env.controllers import make_controller
 from flexarm_env.tasks import TASKS
 from flexarm_env.trials.rollout import roll_out
 from flexarm_env.trials.sets import SETS
+from flexarm_env.wrappers import InterfaceOptions, PolicyInterface
 
 
 def test_an_action_of_nothing_leaves_the_base_controller_alone() -> None:

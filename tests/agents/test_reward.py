@@ -11,9 +11,8 @@ pytest.importorskip("stable_baselines3")
 from small_plans import small
 
 from agents.learning.episodes import RATE, EpisodeVecEnv
-from agents.learning.options import RewardOptions
-from agents.learning.reward import TrainingReward
 from flexarm_env import Arm
+from flexarm_env.wrappers import RewardOptions, ShapedReward
 
 
 def test_vibration_weighs_more_as_training_goes_on() -> None:
@@ -21,7 +20,7 @@ def test_vibration_weighs_more_as_training_goes_on() -> None:
     weights = []
     for _ in range(3):
         env.reset()
-        weights.append(env.reward.vibration)
+        weights.append(env.groups[0].shaping.reward.vibration)
     assert weights == [0.5, 0.75, 1.0]  # 20 actions in each batch of episodes
 
 
@@ -29,9 +28,9 @@ def vibration_costs(frequency: float, amplitude: float) -> np.ndarray:
     """Rewards of 400 samples in which nothing is wrong but the base strain."""
     arm = Arm.load("thesis")
     nothing = {name: np.zeros(1) for name in ("hub_angle", "tip_deflection", "target")}
-    batch = SimpleNamespace(noiseless_readings=np.zeros((1, 4)), info=lambda: nothing)
-    envs = SimpleNamespace(batch=batch, num_envs=1, setup=SimpleNamespace(arm=arm, rate=RATE))
-    reward, gage = TrainingReward(RewardOptions(), envs), list(arm.signals).index("strain_base")  # type: ignore[arg-type]
+    batch = SimpleNamespace(noiseless_readings=np.zeros((1, 4)), info=lambda: nothing, count=1)
+    setup, gage = SimpleNamespace(arm=arm, rate=RATE), list(arm.signals).index("strain_base")
+    reward = ShapedReward(RewardOptions(), setup, batch)  # type: ignore[arg-type]
     reward.start(0.0)
     costs = []
     for k in range(1, 401):

@@ -8,7 +8,7 @@ import gymnasium as gym
 import pytest
 
 from flexarm_env.arm import Arm
-from flexarm_env.registration import IDS
+from flexarm_env.registration import IDS, SHAPED
 
 
 @pytest.mark.parametrize("arm", ["thesis", "cu-flexible"])
@@ -22,8 +22,14 @@ def test_envs_lists_what_gymnasium_makes(flexarm, arm, tmp_path):
         assert env.observation_space.shape == (len(facts["observation"]),)
         assert env.spec.max_episode_steps == facts["steps"] == facts["seconds"] * facts["rate"]
         assert facts["action"]["limit"] == Arm.load(arm).constants["drive"]["limit"]
-        assert list(facts["drawn"]) == (["payload.mass"] if "Random" in id else [])
-    for words in ("strain_base" if arm == "thesis" else "tip_deflection", "5 s, 1000 steps", "10 s, 2000 steps", "0.3 kg"):
+        assert list(facts["drawn"]) == (["payload.mass"] if "Random" in id else ["target"] if "Goal" in id else [])
+    for words in (
+        "strain_base" if arm == "thesis" else "tip_deflection",
+        "5 s, 1000 steps",
+        "10 s, 2000 steps",
+        "0.3 kg",
+        *SHAPED,
+    ):
         assert words in flexarm.out
 
 

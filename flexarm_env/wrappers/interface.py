@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from agents.learning.options import InterfaceOptions
 from flexarm_env.arm import Arm
 from flexarm_env.controllers import make_controller
 from flexarm_env.controllers.estimator import Estimator, row_dot
 from flexarm_env.controllers.loads import KnownLoads
 from flexarm_env.controllers.lqg import LQG
 from flexarm_env.controllers.payload import PayloadEstimator
+from flexarm_env.wrappers.options import InterfaceOptions
 
 Floats = NDArray[np.float64]
 
@@ -24,10 +24,12 @@ FINE_SHARE = 0.01
 FINE_STATE = {"hub": 0.003, "hub_rate": 0.03, "tip": 0.001, "tip_rate": 0.01, "friction": 0.1}
 #: Features are divided by this, so that most are within ±2.
 SPREAD = 3.0
+#: Largest feature: far beyond what any reading or estimate gives, and finite, as checkers of environments ask for.
+LARGEST_FEATURE = 20.0
 PAYLOAD_SCALE = 0.15
 
 
-def squeezed(value: Floats, fine: float) -> Floats:
+def squeezed(value: Floats, fine: float | Floats) -> Floats:
     """Compute asinh(value / fine) over the common spread."""
     squeezed: Floats = np.arcsinh(value / fine) / SPREAD
     return squeezed
@@ -105,7 +107,8 @@ class PolicyInterface:
             found += self._estimates(self.estimator)
         if self.base:
             found += [self.wanted[:, None], self.last]
-        return np.concatenate(found, axis=1, dtype=np.float32)
+        features = np.concatenate(found, axis=1, dtype=np.float32)
+        return np.clip(features, -LARGEST_FEATURE, LARGEST_FEATURE)
 
     def _estimates(self, estimator: Estimator) -> list[Floats]:
         model, moving = estimator.model, self.state[:, :-1]

@@ -1,12 +1,13 @@
-"""Reward of training, from the simulator's true state, which is hidden from the policy."""
+"""Reward on a logarithmic scale, from the simulator's true state, which is hidden from the policy."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from agents.learning.options import RewardOptions
-from flexarm_env.vector_env import FlexArmVectorEnv
+from flexarm_env.env.batch import Batch
+from flexarm_env.env.setup import Setup
+from flexarm_env.wrappers.options import RewardOptions
 
 Floats = NDArray[np.float64]
 
@@ -16,33 +17,34 @@ BEAM_FREQUENCY = 2.0
 WHOLE_ERROR, WHOLE_STRAIN = 100.0, 3.0
 
 
-class TrainingReward:
+class ShapedReward:
     """Costs of the tip's error, of vibration and of the command for many arms, see RewardOptions.
 
     Args:
         options: scales and weights.
-        envs: whose arms are judged.
+        setup: of the environment.
+        batch: of its arms, which are judged.
     """
 
-    def __init__(self, options: RewardOptions, envs: FlexArmVectorEnv) -> None:
-        self.options, self.envs = options, envs
-        beam = envs.setup.arm.constants.get("beam", {})
+    def __init__(self, options: RewardOptions, setup: Setup, batch: Batch) -> None:
+        self.options, self.batch = options, batch
+        beam = setup.arm.constants.get("beam", {})
         self.length = beam.get("length", 1.0)
-        signals = list(envs.setup.arm.signals)
+        signals = list(setup.arm.signals)
         self.gage = signals.index("strain_base") if "strain_base" in signals else None
-        self.quarter = max(round(envs.setup.rate / (4.0 * BEAM_FREQUENCY)), 1)
+        self.quarter = max(round(setup.rate / (4.0 * BEAM_FREQUENCY)), 1)
 
-    def start(self, share: float) -> None:
-        """Begin an episode of every arm, at a share of the training from 0 to 1."""
+    def start(self, share: float = 1.0) -> None:
+        """Begin an episode of every arm, at a share of the training from 0 to 1; its end by default."""
         # at full weight from the start, a policy learns to avoid regions of costly vibration
         self.vibration = self.options.vibration * (1.0 + share * (self.options.rise - 1.0))
         self.strains = np.tile(self._strain(), (self.quarter, 1))
         self.passed = 0
-        self.share = np.zeros(self.envs.num_envs)
+        self.share = np.zeros(self.batch.count)
 
     def sample(self) -> Floats:
         """Compute the reward (arms,) of the last sample."""
-        options, info = self.options, self.envs.batch.info()
+        options, info = self.options, self.batch.info()
         strain, place = self._strain(), self.passed % self.quarter
         before = self.strains[place].copy()
         self.strains[place], self.passed = strain, self.passed + 1
@@ -60,7 +62,7 @@ class TrainingReward:
 
     def _strain(self) -> Floats:
         """Look up the base strain without noise (arms,) [V]; zeros for an arm without that gage."""
-        noiseless = self.envs.batch.noiseless_readings
+        noiseless = self.batch.noiseless_readings
         return np.zeros(len(noiseless)) if self.gage is None else noiseless[:, self.gage].copy()
 
 
