@@ -41,6 +41,7 @@ class Arm(Shown):
         fixed: paths of constants that a fit keeps.
         auto_noise: signals whose noise is estimated from the recordings, `noise = "auto"` in the file. Their noise is 0 here.
         columns: the map of columns of foreign recordings, or None.
+        conditions: by the name of a recording's condition, the path of the constant whose place its value takes.
         controller: the law under which recordings with a reference were made, or None.
         fitted: value, low and high end of the 90 % interval and unit of each fitted path.
         origin: recordings, command and seed of the fit.
@@ -64,6 +65,7 @@ class Arm(Shown):
     fixed: Sequence[str] = ()
     auto_noise: Sequence[str] = ()
     columns: Mapping[str, Any] | None = None
+    conditions: Mapping[str, str] = field(default_factory=dict)
     controller: ControlLaw | None = None
     fitted: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     origin: Mapping[str, Any] = field(default_factory=dict)

@@ -49,8 +49,9 @@ class Recording(Shown):
             tip_deflection [m]; none in commands that are only to be played. NaN where a signal was not measured: between
             the readings of a slower sensor, and in its gaps.
         reference: (n,) [rad], the commanded arm angle, or None.
-        conditions: known conditions in SI. A replay takes up `payload` [kg] alone. The others inform a person, also
-            `start` [s], how long the run had gone on before the first sample: times of effects count from that sample.
+        conditions: known conditions in SI. A replay takes up `payload` [kg], and those to which the arm gives a constant. The
+            others inform a person, also `start` [s], how long the run had gone on before the first sample: times of effects
+            count from that sample.
         controller: the law under which it was made, if its column map states one.
         source: the path it was read from; "" if from none.
         sha256: of that file's content; "" if from none.
