@@ -80,7 +80,8 @@ class Arm(Shown):
         """Read an arm file, or a shipped arm by its name.
 
         Args:
-            source: path of a TOML file, or "thesis", "thesis-fem", "cu-flexible", "cu-rigid", "emps".
+            source: path of a TOML file, or "thesis", "thesis-fem", or that of a real rig, such as "emps"; `shipped_arms`
+                lists them.
             known: catalogue of effects; the shipped and installed ones by default.
 
         Raises:

@@ -52,7 +52,7 @@ def shipped_arms() -> dict[str, Path]:
 
     Example:
         >>> sorted(shipped_arms())
-        ['cu-flexible', 'cu-rigid', 'emps', 'thesis', 'thesis-fem']
+        ['cu-flexible', 'cu-rigid', 'dfki-pendulum', 'emps', 'multiarm-pendulum', 'thesis', 'thesis-fem', 'ur10e-joint1']
     """
     return {path.stem: path for folder in arm_folders() for path in sorted(folder.glob("*.toml"))}
 

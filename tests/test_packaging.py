@@ -30,7 +30,7 @@ LAYERS = (
     {"identify", "controllers", "tasks", "render", "env"},
     {"vector_env", "sb3", "pictures", "registration"},
     {"terminal"},
-    {"lab", "demo", "thesis"},
+    {"lab", "demo", "thesis", "rigs"},
     {"cli", "__main__"},
     {"agents", "benchmarks"},
 )
