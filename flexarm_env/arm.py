@@ -34,8 +34,9 @@ class Arm(Shown):
 
     Attributes:
         name: title in tables and pictures.
-        input: kind of the command, "current" or "voltage".
-        constants: base constants by section and key, {"drive": {"gear_ratio": 1.5, …}, …}; without "beam" the arm is rigid.
+        input: kind of the command, "current", "voltage", "torque" or "position".
+        constants: base constants by section and key, {"drive": {"gear_ratio": 1.5, …}, …}; without "beam" the arm is rigid, with
+            "joint" a spring lies between hub and link.
         sensors: settings of each measured signal.
         effects: parameters of each effect.
         fixed: paths of constants that a fit keeps.
@@ -161,8 +162,10 @@ class Arm(Shown):
         """Whether the arm has a part, a sensor or an input.
 
         Args:
-            need: "beam", "motor_inertia", "hub_inertia" (or a beam), the name of a signal, "strain" for any strain gage,
-                "current" or "voltage".
+            need: "beam", "tip" (of a beam, or of a link with a length), "soft_gears" (a joint, or gears whose stiffness is
+                stated), "motor" (with constants of its own: any drive but torque), "motor_inertia", "hub_inertia" (or a beam or
+                link), "supply" (a voltage that is stated), the name of a signal, "strain" for any strain gage, or the drive's
+                input.
 
         Example:
             >>> Arm.load("cu-rigid").has("beam"), Arm.load("thesis").has("strain")
@@ -171,7 +174,15 @@ class Arm(Shown):
         if need == "motor_inertia":
             return self.constants["drive"]["motor_inertia"] > 0.0
         if need == "hub_inertia":
-            return self.constants["hub"]["inertia"] > 0.0 or "beam" in self.constants
+            return self.constants["hub"]["inertia"] > 0.0 or "beam" in self.constants or "link" in self.constants
+        if need == "tip":
+            return "beam" in self.constants or self.constants.get("link", {}).get("length", 0.0) > 0.0
+        if need == "soft_gears":
+            return "joint" in self.constants or self.constants["drive"]["gear_stiffness"] > 0.0
+        if need == "motor":
+            return self.input != "torque"
+        if need == "supply":
+            return self.constants["drive"]["supply_voltage"] > 0.0
         if need in INPUTS:
             return need == self.input
         if need == "strain":
@@ -211,7 +222,20 @@ class Arm(Shown):
             return self.known[rest[0]].parameters[rest[1]]
         if section == "sensors":
             return self.sensor(rest[0]).settings()[rest[1]]
-        return SECTIONS[section][rest[0]]
+        found = SECTIONS[section][rest[0]]
+        return replace(found, spread=0.0) if self._is_settled(path) else found
+
+    def _is_settled(self, path: str) -> bool:
+        """Whether a base constant is no property of this arm that a fit could move.
+
+        So are the 1 in the place of a torque drive's constant, the shares of friction in front of a joint, where the hub is as
+        well, and a mass that no gravity acts on.
+        """
+        return (
+            (path == "drive.torque_constant" and self.input == "torque")
+            or (path.endswith("_share") and "joint" in self.constants)
+            or (path == "link.mass" and self.constants["link"]["tilt"] == 0.0)
+        )
 
     def value(self, path: str) -> float:
         """Look up a value in SI units.
@@ -294,25 +318,13 @@ class Arm(Shown):
 
     def structure(self) -> Structure:
         """Build the linear part of the arm, with all linear effects applied."""
-        from flexarm_env.plant.structure import Structure
+        from flexarm_env.machine import structure_of_constants
 
-        beam = dict(self.constants.get("beam", {}))
-        drive = self.constants["drive"]
-        structure = Structure(
-            gear_ratio=drive["gear_ratio"],
-            torque_constant=drive["torque_constant"],
-            motor_inertia=drive["motor_inertia"],
-            hub_inertia=self.constants["hub"]["inertia"],
-            resistance=drive["resistance"] if self.input == "voltage" else 0.0,
-            motor_viscous_share=drive["motor_viscous_share"],
-            gear_compliance=1.0 / drive["gear_stiffness"] if drive["gear_stiffness"] > 0.0 else 0.0,
-            elements=int(beam.pop("elements", 0)),
-            sensors={
-                signal: self.sensor(signal).channel(s["gain"], s["offset"], s["filter"], s["position"])
-                for signal, s in self.sensors.items()
-            },
-            **beam,
-        )
+        structure = structure_of_constants(self.constants, self.input)
+        structure.sensors |= {
+            signal: self.sensor(signal).channel(s["gain"], s["offset"], s["filter"], s["position"])
+            for signal, s in self.sensors.items()
+        }
         for name, values in self.present():
             port = self.known[name].port("structure")
             if port is not None:
@@ -325,19 +337,33 @@ class Arm(Shown):
 
     def laws(self) -> list[ActiveLaw]:
         """List the nonlinear laws of all effects that are present, with their parameters."""
-        from flexarm_env.plant.active_laws import ActiveLaw
+        from flexarm_env.plant.active_laws import VARYING_PORTS, ActiveLaw
 
-        active = []
+        active = self._gravity()
         yields = any(self.known[name].port("presliding") for name, _ in self.present())
         for name, values in self.present():
             effect = self.known[name]
             for port in LAW_PORTS:
                 if effect.port(port) is not None:
-                    varies = effect.varies if port == "friction" else port in ("factor", "presliding", "torque", "weight", "drag")
+                    varies = effect.varies if port == "friction" else port in VARYING_PORTS
                     parameters = tuple(values[key] for key in effect.parameters)
-                    share = self.constants["drive"][effect.motor_share] if effect.motor_share and not yields else 0.0
+                    share = 0.0 if yields else self._motor_share(effect)
                     active.append(ActiveLaw(self.known.kinds[name, port], port, parameters, varies, share, self._read_by(effect)))
         return active
+
+    def _motor_share(self, effect: type[Effect]) -> float:
+        """Part of an effect's friction on the motor; the hub in front of an elastic joint turns with it."""
+        if effect.motor_share:
+            return self.constants["drive"][effect.motor_share]
+        return 1.0 if "joint" in self.constants else 0.0
+
+    def _gravity(self) -> list[ActiveLaw]:
+        """List the law of the weight of link or beam: that of a tilted base, with the torque that the constants give."""
+        from flexarm_env.machine import weight
+        from flexarm_env.plant.active_laws import ActiveLaw
+
+        torque, uphill = weight(self.constants)
+        return [ActiveLaw(self.known.kinds["base_tilt", "weight"], "weight", (torque, uphill), varies=True)] if torque else []
 
     def _read_by(self, effect: type[Effect]) -> tuple[str, ...]:
         """Names of the arm's signals on which an effect's sensor law acts."""

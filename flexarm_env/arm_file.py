@@ -11,7 +11,7 @@ from flexarm_env.control.table import law_from_table, law_table
 from flexarm_env.effects import Catalogue
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import read_toml, write_whole
-from flexarm_env.parameters import DEFAULTS, INPUTS, SECTIONS, Parameter, check_bounds
+from flexarm_env.parameters import INPUTS, LEVEL, SECTIONS, Parameter, check_bounds, defaults_of
 from flexarm_env.recordings.conditions import CONDITIONS
 from flexarm_env.recordings.messages import file_error
 from flexarm_env.sensors import known_sensors
@@ -24,21 +24,8 @@ if TYPE_CHECKING:
 LEAST_RESISTANCE = 1e-6
 #: Noise of a sensor that is estimated from the recordings.
 AUTO = "auto"
-TOP = (
-    "name",
-    "description",
-    "fixed",
-    "drive",
-    "hub",
-    "beam",
-    "sensors",
-    "effects",
-    "columns",
-    "conditions",
-    "controller",
-    "fitted",
-    "origin",
-)
+BESIDE = ("columns", "conditions", "controller", "fitted", "origin")
+TOP = ("name", "description", "fixed", *SECTIONS, "sensors", "effects", *BESIDE)
 
 
 def arm_folders() -> list[Path]:
@@ -51,8 +38,8 @@ def shipped_arms() -> dict[str, Path]:
     """List the files of the shipped arms by name.
 
     Example:
-        >>> sorted(shipped_arms())
-        ['cu-flexible', 'cu-rigid', 'dfki-pendulum', 'emps', 'multiarm-pendulum', 'thesis', 'thesis-fem', 'ur10e-joint1']
+        >>> sorted(shipped_arms())[:3]
+        ['cu-flexible', 'cu-rigid', 'dfki-pendulum']
     """
     return {path.stem: path for folder in arm_folders() for path in sorted(folder.glob("*.toml"))}
 
@@ -94,17 +81,7 @@ def arm_from_table(kind: type[Arm], table: Mapping[str, Any], name: str, known: 
         InputError: for an unknown, missing or impossible entry.
     """
     _refuse_unknown("", table, TOP)
-    drive = dict(_table(table, "drive"))
-    command = drive.pop("input", "current")
-    if not isinstance(command, str) or command not in INPUTS:
-        raise InputError(f"drive.input = {command!r}{did_you_mean(str(command), INPUTS)}")
-    constants = {"drive": _section("drive", drive), "hub": _section("hub", _table(table, "hub"))}
-    if command == "voltage" and constants["drive"]["resistance"] < LEAST_RESISTANCE:
-        raise InputError(f'drive.resistance is missing or below {LEAST_RESISTANCE:g} ohm: voltage drive needs it, as "1.35 ohm"')
-    if "beam" in table:
-        constants["beam"] = _section("beam", _table(table, "beam"))
-    elif sum((constants["hub"]["inertia"], constants["drive"]["motor_inertia"])) <= 0.0:
-        raise InputError("hub.inertia is 0 and there is no beam: nothing could move")
+    command, constants = _constants(table)
     sensors, auto_noise = _sensors(_table(table, "sensors"))
     arm = kind(
         name=str(table.get("name", name)),
@@ -135,6 +112,57 @@ def arm_from_table(kind: type[Arm], table: Mapping[str, Any], name: str, known: 
         read = {key: _number(f"effects.{effect}.{key}", value, parameters[key]) for key, value in given.items()}
         arm = arm.with_effect(effect, **absent, **read)
     return arm
+
+
+def _constants(table: Mapping[str, Any]) -> tuple[str, dict[str, dict[str, float]]]:
+    """Read the kind of the drive's command and the base constants by section."""
+    drive = dict(_table(table, "drive"))
+    command = drive.pop("input", "current")
+    if not isinstance(command, str) or command not in INPUTS:
+        raise InputError(f"drive.input = {command!r}{did_you_mean(str(command), INPUTS)}")
+    constants = {"drive": _section("drive", drive, defaults_of("drive", command, table))}
+    given = {"hub": _table(table, "hub", {} if "link" in table else None)}
+    given |= {section: _table(table, section) for section in ("beam", "link", "joint") if section in table}
+    constants |= {section: _section(section, values, defaults_of(section, command, table)) for section, values in given.items()}
+    _check_drive(command, drive, constants["drive"])
+    _check_bodies(constants)
+    return command, constants
+
+
+def _check_drive(command: str, given: Mapping[str, Any], drive: Mapping[str, float]) -> None:
+    """Refuse a drive that lacks a constant, or states one that its kind does not have."""
+    if command == "torque" and "torque_constant" in given:
+        raise InputError('drive.torque_constant: a torque drive has none; take it out, or write input = "current"')
+    if command in ("voltage", "position") and drive["resistance"] < LEAST_RESISTANCE:
+        raise InputError(
+            f'drive.resistance is missing or below {LEAST_RESISTANCE:g} ohm: {command} drive needs it, as "1.35 ohm"'
+        )
+    for key in ("proportional", "error_gain", "supply_voltage"):
+        if command == "position" and drive[key] <= 0.0:
+            raise InputError(f"drive.{key} is missing or 0: the servo of a position drive needs it")
+    for key in ("proportional", "derivative", "error_gain", "current_limit"):
+        if command != "position" and drive[key] != 0.0:
+            raise InputError(
+                f'drive.{key} is of a servo, and drive.input is "{command}": take it out, or write input = "position"'
+            )
+
+
+def _check_bodies(constants: Mapping[str, Mapping[str, float]]) -> None:
+    """Refuse parts that exclude each other, and a body without inertia."""
+    drive, hub = constants["drive"], constants["hub"]["inertia"]
+    if "beam" in constants and "link" in constants:
+        raise InputError("[beam] and [link] are both there: an arm is flexible or rigid; keep one of them")
+    link = "beam" in constants or constants.get("link", {}).get("inertia", 0.0) > 0.0
+    front = hub > 0.0 or drive["motor_inertia"] > 0.0
+    if "joint" in constants:
+        if not link:
+            raise InputError("[joint] has nothing behind it: add [link] with an inertia, or [beam]")
+        if not front:
+            raise InputError("[joint] has nothing in front of it: give hub.inertia or drive.motor_inertia")
+        if drive["gear_stiffness"] > 0.0:
+            raise InputError("drive.gear_stiffness and [joint] are both there: an arm has one spring; keep one of them")
+    elif not link and not front:
+        raise InputError("hub.inertia is 0 and there is neither beam nor link: nothing could move")
 
 
 def _fixed(given: Any, constants: Mapping[str, Any], sensors: Mapping[str, Any]) -> list[str]:
@@ -192,10 +220,12 @@ def _number(path: str, value: Any, parameter: Parameter) -> float:
     return check_bounds(path, number, parameter)
 
 
-def _section(section: str, given: Mapping[str, Any]) -> dict[str, float]:
+def _section(section: str, given: dict[str, Any], defaults: Mapping[str, float]) -> dict[str, float]:
     parameters = SECTIONS[section]
+    if "tilt" in parameters:
+        given = _with_tilt(section, given)
     _refuse_unknown(f"{section}.", given, parameters)
-    values = dict(DEFAULTS[section])
+    values = dict(defaults)
     values |= {key: _number(f"{section}.{key}", value, parameters[key]) for key, value in given.items()}
     for key, parameter in parameters.items():
         if key not in values:
@@ -203,6 +233,17 @@ def _section(section: str, given: Mapping[str, Any]) -> dict[str, float]:
     if section == "beam" and values["elements"] != int(values["elements"]):
         raise InputError(f"beam.elements = {values['elements']:g}; write a whole number")
     return values
+
+
+def _with_tilt(section: str, given: dict[str, Any]) -> dict[str, Any]:
+    """Replace `vertical = true`, a motion in a vertical plane, by the tilt of the axis."""
+    if "vertical" not in given:
+        return given
+    if not isinstance(given["vertical"], bool):
+        raise InputError(f"{section}.vertical = {given['vertical']!r}; write true or false")
+    if "tilt" in given:
+        raise InputError(f"{section}.vertical and {section}.tilt are both there; keep one of them")
+    return {key: value for key, value in given.items() if key != "vertical"} | {"tilt": LEVEL if given["vertical"] else 0.0}
 
 
 def _sensors(given: Mapping[str, Any]) -> tuple[dict[str, dict[str, float]], list[str]]:
@@ -270,8 +311,9 @@ def arm_text(arm: Arm) -> str:
         table = tomlkit.table()
         if section == "drive":
             table["input"] = arm.input
+        defaults = defaults_of(section, arm.input, arm.constants)
         for key, value in values.items():
-            if DEFAULTS[section].get(key) != value:
+            if defaults.get(key) != value:
                 _put(table, key, value, SECTIONS[section][key].unit)
         document[section] = table
     sensors = tomlkit.table(is_super_table=True)

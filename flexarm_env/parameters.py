@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,9 +11,9 @@ import numpy as np
 from flexarm_env.errors import InputError
 
 #: SI unit of each kind of command.
-INPUTS: dict[str, str] = {"current": "A", "voltage": "V"}
+INPUTS: dict[str, str] = {"current": "A", "voltage": "V", "torque": "N*m", "position": "rad"}
 #: Parts that an effect or a sensor may need of an arm, beside its input.
-NEEDS = ("beam", "motor_inertia", "hub_inertia")
+NEEDS = ("beam", "tip", "soft_gears", "motor", "motor_inertia", "hub_inertia", "supply")
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,8 @@ class Parameter:
 
 
 TABLE = "thesis Table A.1"
+#: Tilt of an axis that is level, about which gravity acts in full.
+LEVEL = math.pi / 2
 
 DRIVE = {
     "torque_constant": Parameter(
@@ -69,6 +72,12 @@ DRIVE = {
         source="thesis App. A",
     ),
     "gear_ratio": Parameter("", 1e-3, 1e4, 1.5, spread=0.0, meaning="motor turns per arm turn", source=TABLE),
+    "efficiency": Parameter(
+        "", 0.01, 1.0, 1.0, spread=0.0, meaning="of motor and gears: torque on the arm over that without losses"
+    ),
+    "amplifier_gain": Parameter(
+        "", 0.0, 1e3, 1.0, spread=0.1, meaning="command that the amplifier gives out over the recorded one; 0: exact"
+    ),
     "motor_inertia": Parameter(
         "kg*m**2", 0.0, 1e4, 0.00193, spread=0.3, meaning="rotor and motor gear, motor side", source=TABLE
     ),
@@ -78,10 +87,22 @@ DRIVE = {
         1e6,
         1.35,
         spread=0.0,
-        meaning="armature resistance (voltage drive only)",
+        meaning="armature resistance (voltage and position drive)",
         source="thesis App. A, experiment 1",
     ),
-    "limit": Parameter("", 0.0, 1e6, 5.0, spread=0.0, meaning="largest command, in A or V", source="thesis section 4.2"),
+    "proportional": Parameter(
+        "", 0.0, 1e6, 400.0, spread=0.0, meaning="gain of the servo's firmware on the position error (position drive only)"
+    ),
+    "derivative": Parameter(
+        "s", 0.0, 1e6, 0.0, spread=0.0, meaning="gain of the servo's firmware on the speed (position drive only)"
+    ),
+    "error_gain": Parameter(
+        "1/rad", 0.0, 1e6, 0.01, spread=0.15, meaning="duty by 1 rad and a firmware gain of 1 (position drive only)"
+    ),
+    "supply_voltage": Parameter("V", 0.0, 1e6, 0.0, spread=0.0, meaning="voltage at a duty of 1 (position and voltage drive)"),
+    "largest_duty": Parameter("", 0.0, 1.0, 1.0, spread=0.0, meaning="share of the supply that the servo gives out at most"),
+    "current_limit": Parameter("A", 0.0, 1e6, 0.0, spread=0.0, meaning="of the servo's firmware; 0: none"),
+    "limit": Parameter("", 0.0, 1e6, 5.0, spread=0.0, meaning="largest command, in A, V, Nm or rad", source="thesis section 4.2"),
     "torque_noise": Parameter(
         "N*m", 0.0, 1e4, 0.0, spread=0.0, meaning="unmodelled disturbance torque at the hub, standard deviation per sample"
     ),
@@ -128,12 +149,35 @@ BEAM = {
     "tip_mass": Parameter("kg", 0.0, 1e3, 0.0, spread=0.0, meaning="known mass at the tip"),
     "tip_inertia": Parameter("kg*m**2", 0.0, 1e3, 0.0, spread=0.0, meaning="known inertia of the tip mass about the tip"),
 }
-SECTIONS: dict[str, dict[str, Parameter]] = {"drive": DRIVE, "hub": HUB, "beam": BEAM}
+GRAVITY = {
+    "tilt": Parameter("rad", 0.0, LEVEL, 0.0, spread=0.0, meaning="of the axis from the vertical; 90°: it is level"),
+    "hangs_at": Parameter("rad", -6.3, 6.3, 0.0, spread=0.0, meaning="angle of the arm at which it hangs"),
+}
+BEAM |= GRAVITY
+LINK = {
+    "mass": Parameter("kg", 1e-6, 1e4, 0.1, spread=0.15, meaning="of the rigid link, which gives its weight"),
+    "centre": Parameter("m", 1e-6, 1e2, 0.1, spread=0.0, meaning="from the axis to the centre of mass"),
+    "inertia": Parameter("kg*m**2", 0.0, 1e4, 1e-3, spread=0.3, meaning="of the rigid link about the axis"),
+    "length": Parameter("m", 0.0, 1e2, 0.0, spread=0.0, meaning="from the axis to the tip, which carries a payload; 0: no tip"),
+} | GRAVITY
+JOINT = {
+    "stiffness": Parameter("N*m/rad", 1e-6, 1e9, 100.0, spread=0.15, meaning="of the spring between hub and link"),
+    "damping": Parameter("N*m*s/rad", 0.0, 1e6, 0.01, spread=0.5, meaning="of that spring"),
+}
+SECTIONS: dict[str, dict[str, Parameter]] = {"drive": DRIVE, "hub": HUB, "beam": BEAM, "link": LINK, "joint": JOINT}
 
 #: Defaults of keys that an arm file may omit.
 DEFAULTS: dict[str, dict[str, float]] = {
     "drive": {
+        "efficiency": 1.0,
+        "amplifier_gain": 0.0,
         "resistance": 0.0,
+        "proportional": 0.0,
+        "derivative": 0.0,
+        "error_gain": 0.0,
+        "supply_voltage": 0.0,
+        "largest_duty": 1.0,
+        "current_limit": 0.0,
         "limit": 0.0,
         "torque_noise": 0.0,
         "gear_stiffness": 0.0,
@@ -142,8 +186,32 @@ DEFAULTS: dict[str, dict[str, float]] = {
         "motor_viscous_share": 0.0177,
     },
     "hub": {},
-    "beam": {"tip_mass": 0.0, "tip_inertia": 0.0},
+    "beam": {"tip_mass": 0.0, "tip_inertia": 0.0, "tilt": 0.0, "hangs_at": 0.0},
+    "link": {"length": 0.0, "tilt": 0.0, "hangs_at": 0.0},
+    "joint": {"damping": 0.0},
 }
+#: Defaults of a drive without motor constants, and of the friction's shares in front of an elastic joint.
+TORQUE_DRIVE = {"torque_constant": 1.0, "gear_ratio": 1.0, "motor_inertia": 0.0}
+BEFORE_JOINT = {"motor_coulomb_share": 1.0, "motor_stiction_share": 1.0, "motor_viscous_share": 1.0}
+
+
+def defaults_of(section: str, command: str, parts: Collection[str]) -> dict[str, float]:
+    """Collect the defaults of a section's keys, which depend on the kind of drive and on the parts of the arm.
+
+    Args:
+        section: of an arm file, "drive", "hub", ….
+        command: kind of the drive's command.
+        parts: names of the arm file's sections.
+    """
+    values = dict(DEFAULTS[section])
+    if section == "drive" and command == "torque":
+        values |= TORQUE_DRIVE
+    if section == "drive" and "joint" in parts:
+        values |= BEFORE_JOINT
+    if section == "hub" and "link" in parts:
+        values["inertia"] = 0.0
+    return values
+
 
 #: Keys of a sensor's table. Units, defaults and priors of each signal: `Sensor.settings`.
 SENSOR = {

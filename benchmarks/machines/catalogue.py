@@ -112,6 +112,17 @@ PLANT: dict[str, Hidden] = {
         part="static friction",
     ),
     "constant_torque": plain("bias", "torque", of_torque(0.2), signed=True),
+    "end_stop": Hidden(
+        lambda m: 20.0 * m.torque / m.angle,
+        lambda m, size, details: {"stop": size, **details},
+        lambda m: {"stop_at": (0.5 * m.angle, 0.8 * m.angle)},
+        lambda m, size, details: {
+            "stiffness": size,
+            "upper": details["stop_at"],
+            "lower": -details["stop_at"],
+            "damping_time": 0.0,
+        },
+    ),
     "cable_stiffness": detailed(
         "cable",
         "stiffness",

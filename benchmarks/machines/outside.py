@@ -51,7 +51,6 @@ OUTSIDE: dict[str, Hidden] = {
         of_torque(0.3),
         lambda m: {"spot_at": (-0.5 * m.angle, 0.5 * m.angle), "spot_width": (0.04 * m.angle, 0.1 * m.angle)},
     ),
-    "end_stop": detailed("stop", "", lambda m: 20.0 * m.torque / m.angle, lambda m: {"stop_at": (0.5 * m.angle, 0.8 * m.angle)}),
     "motor_saturation": plain(
         "sag", "", lambda m: 0.6 * (m.values["drive.gear_ratio"] * m.values["drive.torque_constant"] / m.torque) ** 2
     ),

@@ -27,6 +27,8 @@ class Effect:
     - ``drive(…)`` returns the command that gets through [A or V], from command, previous, interval [s].
     - ``ramp(…)`` returns the mean [A or V] over a part of a sample of a drive that is on its way to that command, from command,
       previous, start and end of the part [s], counted from where it left previous.
+    - ``spring(…)`` returns a torque in gears that wind up, or in a joint [Nm, arm side], beside that of their linear spring, from
+      windup [rad, arm side], motor_angle [rad], stiffness [Nm/rad]. It turns the hub and turns back the motor.
     - ``sensor(…)`` returns the reading of each sensor of `reads`, in SI units, from reading (without the effect), angle of the
       hub [rad], motor_angle [rad], time [s].
 
@@ -48,8 +50,7 @@ class Effect:
         most_elements: finite elements of a beam beyond which it is no candidate.
         condition: the condition of a recording, as in "# payload = 0.3 kg", that is added to its size; "" for none.
         modifies: the effect that it changes and without which it is no candidate, "" for none.
-        needs: required of the arm: "beam", "motor_inertia", "hub_inertia" (or a beam), names of signals, "strain" for any
-            strain gage, or its input, "current" or "voltage".
+        needs: required of the arm: names of parts as in `Arm.has`, of signals, "strain" for any strain gage, or its input.
         fitted: whether its parameters can be fitted (a count cannot).
     """
 

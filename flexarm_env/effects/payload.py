@@ -18,7 +18,7 @@ class Payload(Effect):
     looks_like = "all frequencies lie low and swings are larger and longer"
     confused_with = ("tip_inertia", "root_compliance")
     source = "thesis eqs. 3.14 and 3.32"
-    needs = ("beam",)
+    needs = ("tip",)
     condition = "payload"
 
     @staticmethod

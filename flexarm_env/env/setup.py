@@ -141,8 +141,10 @@ def sensors_of(setup: Setup) -> Floats:
 
 
 def command_per_torque_of(arm: Arm) -> float:
-    """Compute the command that gives 1 Nm on the hub at rest [A/Nm or V/Nm]."""
+    """Compute the command that gives 1 Nm on the hub at rest [A, V, Nm or rad per Nm]."""
     drive = arm.constants["drive"]
+    if arm.input == "position":
+        return float(1.0 / arm.structure().torque_by_command)
     command_per_torque = 1.0 / (drive["gear_ratio"] * drive["torque_constant"])
     return command_per_torque * drive["resistance"] if arm.input == "voltage" else command_per_torque
 

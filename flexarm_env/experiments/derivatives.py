@@ -52,8 +52,15 @@ def tangents_of(arm: Arm, plant: Plant, paths: Sequence[str]) -> Tangents:
         paths: of constants and parameters, as "beam.length", "effects.coulomb.torque".
 
     Raises:
-        InputError: for a value at which the arm changes its kind, as a filter of no length.
+        InputError: for a value at which the arm changes its kind, as a filter of no length, and for an arm whose drive's torque
+            depends on the motion, or with a nonlinear spring.
     """
+    if arm.input == "position" or arm.structure().has_limits:
+        raise InputError(
+            f"arm '{arm.name}' has a servo or a supply that sags, by which there are no derivatives: take differences"
+        )
+    if any(law.port == "spring" for law in arm.laws()):
+        raise InputError(f"arm '{arm.name}' has a spring that is not linear, by which there are no derivatives: take differences")
     scales = np.array([_scale(arm, path) for path in paths])
     beside = [
         arm.with_values({path: arm.value(path) + STEP * scale * place})

@@ -25,7 +25,7 @@ TONE = 0.55  # [A]
 
 @dataclass(frozen=True)
 class Plan:
-    """An experiment of n samples: command = feed + PD on the reference, where there is one.
+    """An experiment of n samples: command = feed + PD on the reference, where there is one; a position drive takes it as it is.
 
     Attributes:
         feed: (n,) open-loop part of the command [A or V].

@@ -50,6 +50,8 @@ class Rig:
         self.share = late - np.floor(late)
         self.columns = np.arange(len(sensors))
         self.speed = SpeedEstimate(arm, rate)
+        #: Whether the drive follows an angle by itself.
+        self.follows = arm.input == "position"
         self.limit = arm.constants["drive"]["limit"]
         scale, gears = command_scale(arm), GEAR_RATIO / arm.constants["drive"]["gear_ratio"]
         self.gains = (scale * PROPORTIONAL, scale * gears * DERIVATIVE)
@@ -98,7 +100,9 @@ class Rig:
 
     def _command(self, plan: Plan, k: int) -> float:
         command = float(plan.feed[k])
-        if plan.reference is not None:
+        if plan.reference is not None and self.follows:
+            command += float(plan.reference[k])
+        elif plan.reference is not None:
             angle, speed = self.speed.read(self.readings[k])
             command += self.gains[0] * (float(plan.reference[k]) - angle) - self.gains[1] * speed
         return min(max(command, -self.limit), self.limit) if self.limit > 0.0 else command

@@ -46,10 +46,10 @@ def check_stated(arm: Arm, recording: Recording) -> None:
     for path, value in stated_by(arm, recording):
         if path != PAYLOAD:
             check_bounds(f"{recording.name} states {path}, which", value, arm.parameter(path))
-        elif not arm.has("beam"):
+        elif not arm.has("tip"):
             raise InputError(
-                f"{recording.name} states a payload of {value:g} kg, but arm '{arm.name}' has no beam to carry it; "
-                "add [beam] to the arm file, or put the load into hub.inertia and take the line '# payload' out"
+                f"{recording.name} states a payload of {value:g} kg, but arm '{arm.name}' has no tip to carry it; "
+                "add [beam], or a length to [link], or put the load into hub.inertia and take the line '# payload' out"
             )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from flexarm_env.arm import Arm, short_name
 from flexarm_env.identify.explain.comparison import Comparison
 from flexarm_env.identify.results import Diagnosis
+from flexarm_env.parameters import INPUTS
 from flexarm_env.pictures import words
 from flexarm_env.recordings.recording import Recording
 
@@ -44,7 +45,7 @@ def _(arm: Arm) -> str:
 
 @as_html.register
 def _(recording: Recording) -> str:
-    unit = "A" if recording.input_kind == "current" else "V"
+    unit = INPUTS[recording.input_kind]
     rows = [[recording.input_kind, *_reach(recording.command), unit]]
     for signal in words.signals_of(list(recording.signals)):
         label, unit = words.label_of(signal), words.unit_of(signal)

@@ -9,6 +9,7 @@ from plotly.subplots import make_subplots
 
 from flexarm_env.identify.explain.comparison import Comparison, Replay
 from flexarm_env.identify.replay.readings import extent
+from flexarm_env.parameters import INPUTS
 from flexarm_env.pictures import words
 from flexarm_env.pictures.highlight import CLOSE, most_informative_window, replay_of
 from flexarm_env.pictures.plots import STEPS_PER_NOISE, Floats, curve, legend, where_measured, with_layout
@@ -95,7 +96,7 @@ def informative_window(before: Comparison, after: Comparison | None) -> tuple[go
 
 def recorded(recording: Recording) -> go.Figure:
     """Draw a recording alone: the command and the sensors' readings."""
-    unit = "A" if recording.input_kind == "current" else "V"
+    unit = INPUTS[recording.input_kind]
     rows: list[tuple[str, Floats]] = [(f"{recording.input_kind} [{unit}]", recording.command)]
     rows += [(title(s), recording.signals[s]) for s in words.signals_of(list(recording.signals))]
     figure = make_subplots(

@@ -13,6 +13,7 @@ from scipy.signal import welch
 
 from flexarm_env.identify.explain.bands import at_own_rate
 from flexarm_env.identify.explain.comparison import Comparison, Replay
+from flexarm_env.parameters import INPUTS
 from flexarm_env.pictures.overlays import AS_GIVEN, CORRECTED, band
 from flexarm_env.pictures.plots import Floats, digits, in_steps, legend, where_measured, with_layout
 from flexarm_env.pictures.style import AFTER_LINE, BEFORE_LINE, INK, REGIMES
@@ -56,7 +57,7 @@ def drivers(comparison: Comparison, recordings: Sequence[Recording]) -> list[Dri
     speeds = [_speed(one, comparison) for one in replays]
     if all(speed is not None for speed in speeds):
         found.append(Driver("arm speed", "rad/s", np.concatenate(speeds)))  # type: ignore[arg-type]
-    unit = "A" if comparison.arm.input == "current" else "V"
+    unit = INPUTS[comparison.arm.input]
     pairs = zip(replays, recordings, strict=True)  # a comparison may have left out samples
     commands = [run.command[np.searchsorted(run.time - run.time[0], one.time)] for one, run in pairs]
     found.append(Driver(comparison.arm.input, unit, np.concatenate(commands)))

@@ -17,8 +17,13 @@ LAW_LISTS = {
     "drag": at.DRAG_LAWS,
     "drive": at.DRIVE_LAWS,
     "ramp": at.RAMP_LAWS,
+    "spring": at.SPRING_LAWS,
     "sensor": at.SENSOR_LAWS,
 }
+
+
+#: Ports whose laws change while a body turns one way.
+VARYING_PORTS = frozenset({"factor", "presliding", "torque", "weight", "drag", "spring"})
 
 
 @dataclass(frozen=True)

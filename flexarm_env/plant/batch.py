@@ -28,7 +28,7 @@ def write_truth(d: Numbers, n: Places, s: Numbers, out: Numbers, first: int) -> 
     stuck = is_stuck(mode, 0)
     out[first + TRUTH_ANGLE] = s[at.HELD_HUB] if stuck else inlined_dot(d, rows, s, at.Z_START, size)
     out[first + TRUTH_SPEED] = 0.0 if stuck else inlined_dot(d, rows + count * size, s, at.Z_START, size)
-    deflection = inlined_dot(d, rows + (count - 2) * size, s, at.Z_START, size) if count > n[at.BODIES] else 0.0
+    deflection = inlined_dot(d, rows + n[at.TIP] * size, s, at.Z_START, size) if n[at.TIP] >= 0 else 0.0
     out[first + TRUTH_DEFLECTION] = deflection
     out[first + TRUTH_STUCK] = 1.0 if stuck else 0.0
     out[first + TRUTH_LOST] = 1.0 if is_lost(n, s) else 0.0

@@ -50,7 +50,8 @@ def mean_during_ramp(d: Numbers, n: Places, before: float, command: float, start
 @njit
 def hub_rests(n: Places, mode: int) -> bool:
     """Whether the hub of an arm of one body is held, so that no force varies with its motion."""
-    return n[at.BODIES] == 1 and mode == 1 and n[n[at.TORQUE_LAWS]] == 0
+    steady = n[n[at.TORQUE_LAWS]] == 0 and n[at.DRIVE_FEEDBACK] == at.NO_FEEDBACK
+    return n[at.BODIES] == 1 and mode == 1 and steady
 
 
 @njit
@@ -94,23 +95,34 @@ def move(a: Arrays, command: float, t: float, slot: int) -> None:
     substep(a, command, t, slot)
 
 
+@njit(forceinline=True)
+def apply_command(n: Places, s: Numbers, command: float) -> None:
+    """Store the command in effect where the drive's limits depend on it."""
+    if n[at.DRIVE_FEEDBACK] != at.NO_FEEDBACK:
+        s[at.COMMAND] = command
+
+
 @njit
 def control_step(d: Numbers, n: Places, s: Numbers, before: float, command: float, w: Numbers) -> None:
     """Advance the arm by one sample: the last command acts until the delay is over, then the new one."""
-    a = Arrays(d, n, s, w)
+    a, own = Arrays(d, n, s, w), s[at.COMMAND]
+    apply_command(n, s, before)
     for _ in range(n[at.EARLY_SUBSTEPS]):
         if n[at.STEADY_BODIES] != 1 or not quiet_step(a, before, d[at.EARLY_LENGTH], 0):
             move(a, before, d[at.EARLY_LENGTH], 0)
     for j in range(n[at.LATE_SUBSTEPS]):
         now = mean_during_ramp(d, n, before, command, j * d[at.LATE_LENGTH], (j + 1) * d[at.LATE_LENGTH])
+        apply_command(n, s, now)
         if n[at.STEADY_BODIES] != 1 or not quiet_step(a, now, d[at.LATE_LENGTH], 1):
             move(a, now, d[at.LATE_LENGTH], 1)
+    apply_command(n, s, own)
 
 
 @njit(inline="always")
 def uneven_step(a: Arrays, before: float, command: float, interval: float) -> None:
     """Advance the arm as control_step does, over an interval [s] without tables."""
-    d, n = a.d, a.n
+    d, n, own = a.d, a.n, a.s[at.COMMAND]
+    apply_command(n, a.s, before)
     early = min(d[at.EARLY_LENGTH] * n[at.EARLY_SUBSTEPS], interval)
     late = interval - early
     if early > 0.0:
@@ -118,4 +130,6 @@ def uneven_step(a: Arrays, before: float, command: float, interval: float) -> No
     count = max(math.ceil(late / d[at.LATE_LENGTH] - 1e-9), 1) if late > 0.0 else 0
     for j in range(count):
         now = mean_during_ramp(d, n, before, command, j * late / count, (j + 1) * late / count)
+        apply_command(n, a.s, now)
         move(a, now, late / count, UNTABULATED)
+    apply_command(n, a.s, own)

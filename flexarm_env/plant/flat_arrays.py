@@ -62,7 +62,7 @@ def pack(
     """
     active = laws[0]
     ports = frozenset(law.port for law in active) & LINEAR_PORTS
-    varying = any(law.varies for law in active)
+    varying = any(law.varies for law in active) or structure.has_limits
     if _is_cached(structure, decompose):
         linear = _linear_numbers_of_one(structure.key, ports, varying)
     else:
@@ -172,8 +172,12 @@ def _counts(structure: Structure, model: LinearModel, modes: Sequence[Mode], poi
     n = np.zeros(at.COUNTS, dtype=np.int64)
     bodies = 2 if structure.separate_motor else 1
     n[at.BODIES], n[at.COORDINATES], n[at.POINTS] = bodies, len(model.names), points
-    holds = np.any(np.not_equal(structure.hub_stiffness, 0.0)) or np.any(model.extra_from_motion[..., 0])  # a filtered angle
+    pulled = np.any(np.not_equal(structure.hub_stiffness, 0.0)) or structure.is_servo
+    holds = pulled or np.any(model.extra_from_motion[..., 0])  # a filtered angle
     n[at.COUPLED] = bodies == 2 or holds
+    n[at.TIP] = len(model.names) - 2 if structure.elements else -1
+    n[at.HUB_BODY] = bodies - 1 if structure.has_joint else 0
+    n[at.DRIVE_FEEDBACK] = at.LIMITED if structure.has_limits else at.PROPORTIONAL if structure.is_servo else at.NO_FEEDBACK
     n[at.VARYING] = varying
     n[at.STEADY_BODIES] = 0 if varying else bodies
     n[at.BLOCKS] = max(mode.c0.shape[-1] for mode in modes)
@@ -199,11 +203,32 @@ def _constants(structure: Structure, laws: Sequence[Sequence[ActiveLaw]], interv
     head[..., at.LOAD_STIFFNESS] = structure.gear_stiffness
     head[..., at.LOAD_DAMPING] = structure.gear_damping_time * structure.gear_stiffness
     head[..., at.LOAD_BY_COMMAND] = structure.torque_by_command
+    _add_drive(structure, head)
     two = structure.separate_motor
     shares = np.array([[law.motor_share if two else 0.0 for law in own if law.port == "friction"] for own in laws])
     head[..., at.HUB_FRICTION_SHARE] = np.sum(1.0 - shares, axis=-1).reshape(lengths.shape[:-1])
     head[..., at.MOTOR_FRICTION_SHARE] = np.sum(shares, axis=-1).reshape(lengths.shape[:-1])
     return head
+
+
+def _add_drive(structure: Structure, head: Matrix) -> None:
+    """Write the constants of a drive with feedback or limits to those of d."""
+    if not (structure.is_servo or structure.has_limits):
+        return
+    s = structure
+    head[..., at.VOLTAGE_BY_ANGLE] = gain = s.command_gain * s.position_gain
+    head[..., at.VOLTAGE_BY_COMMAND] = gain if s.is_servo else s.command_gain
+    head[..., at.VOLTAGE_BY_SPEED] = s.command_gain * s.rate_gain
+    head[..., at.TORQUE_BY_VOLTAGE], head[..., at.BACK_EMF] = s.torque_by_amp / s.resistance, s.back_emf
+    head[..., at.LARGEST_VOLTAGE] = _or_none(s.largest_voltage if s.is_servo else 0.0)
+    head[..., at.LARGEST_DROP] = _or_none(s.largest_current * s.resistance)
+    head[..., at.SUPPLY_VOLTAGE] = _or_none(s.supply_voltage)
+    head[..., at.SUPPLY_SHARE] = s.supply_resistance / s.resistance
+
+
+def _or_none(limit: float | Matrix) -> Matrix:
+    """Replace a limit of 0, which stands for none, by infinity."""
+    return np.where(np.greater(limit, 0.0), limit, np.inf)
 
 
 def _points(model: LinearModel, ports: frozenset[str]) -> NDArray[np.intp]:

@@ -6,7 +6,15 @@ from numba import njit
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Numbers, Places, Segment
-from flexarm_env.plant.friction import Contact, friction_budget, gear_load, preslides, presliding_friction
+from flexarm_env.plant.friction import (
+    Contact,
+    friction_budget,
+    gear_load,
+    limited_torque,
+    preslides,
+    presliding_friction,
+    spring_torque,
+)
 from flexarm_env.plant.laws import drag_law, torque_law, weight_law
 from flexarm_env.plant.modes import is_stuck, record
 from flexarm_env.plant.propagate import dot
@@ -48,7 +56,8 @@ def apply_laws(a: Arrays, mode: int, time: float, motion: int, out: int) -> None
     d, n, s, w = a.d, a.n, a.s, a.w
     bodies = n[at.BODIES]
     last = bodies - 1
-    load = gear_load(d, n, s, mode, w[motion + last] - w[motion], w[motion + bodies + last] - w[motion + bodies])
+    windup, rate = w[motion + last] - w[motion], w[motion + bodies + last] - w[motion + bodies]
+    load = gear_load(d, n, s, mode, windup, rate, w[motion + last], w[motion + bodies + last])
     for body in range(bodies):
         angle, speed = w[motion + body], w[motion + bodies + body]
         if is_stuck(mode, body):
@@ -58,6 +67,13 @@ def apply_laws(a: Arrays, mode: int, time: float, motion: int, out: int) -> None
         dry = friction_budget(d, n, body, Contact(direction, max(speed * direction, 0.0), angle, time, load, False))
         against = presliding_friction(d, n, s, angle, dry) if preslides(n, body) else direction * dry
         w[out + body] = effect_torque(d, n, body, angle, speed, time) - against
+    if n[n[at.SPRING_LAWS]] > 0 and bodies == 2:
+        through = spring_torque(d, n, mode, windup, w[motion + 1])
+        w[out] += through
+        w[out + 1] -= through
+    if n[at.DRIVE_FEEDBACK] == at.LIMITED:
+        speed = 0.0 if is_stuck(mode, last) else w[motion + bodies + last]
+        w[out + last] += limited_torque(d, n, s[at.COMMAND], w[motion + last], speed)
     place = n[at.DRAG_LAWS]
     for point in range(n[at.POINTS]):
         total = 0.0

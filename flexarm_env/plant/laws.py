@@ -58,6 +58,12 @@ def ramp_law(kind, command, previous, start, end, d, k):
 
 
 @njit
+def spring_law(kind, windup, motor_angle, stiffness, d, k):
+    """Compute the torque [Nm, arm side] of effect `kind` that turns the hub and turns back the motor, through gears or joint."""
+    return 0.0
+
+
+@njit
 def sensor_law(kind, reading, angle, motor_angle, time, d, k):
     """Compute the reading with effect `kind`, from the one without it."""
     return reading

@@ -12,6 +12,7 @@ PORT_ARGUMENTS: dict[str, tuple[str, ...]] = {
     "drag": ("velocity",),
     "drive": ("command", "previous", "interval"),
     "ramp": ("command", "previous", "start", "end"),
+    "spring": ("windup", "motor_angle", "stiffness"),
     "sensor": ("reading", "angle", "motor_angle", "time"),
 }
 

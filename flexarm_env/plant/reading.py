@@ -16,8 +16,25 @@ FASTEST_ACCELEROMETER = 1e-4
 
 
 @dataclass(frozen=True)
+class Current:
+    """The motor's current [A]: its parts by the command, by the coordinates q, by their rates and by the lagged current.
+
+    Attributes:
+        command: [A per command], (arms,) of stacked arms.
+        position: (coordinates,), of stacked arms (arms, coordinates).
+        speed: the same of the rates.
+        lagged: 1 where the current lags behind the command and is a state of its own, else 0.
+    """
+
+    command: float | Matrix
+    position: Matrix
+    speed: Matrix
+    lagged: float = 0.0
+
+
+@dataclass(frozen=True)
 class Reading:
-    """The quantity position · q + speed · q̇ + acceleration · q̈ in SI units, before gain, offset and filter.
+    """The quantity position · q + speed · q̇ + acceleration · q̈ + current in SI units, before gain, offset and filter.
 
     Each row is (coordinates,), of stacked arms (arms, coordinates), or None for zero.
     """
@@ -25,6 +42,12 @@ class Reading:
     position: Matrix | None = None
     speed: Matrix | None = None
     acceleration: Matrix | None = None
+    current: Current | None = None
+
+    @property
+    def jumps(self) -> bool:
+        """Whether the quantity jumps with the command, and so passes a filter."""
+        return self.acceleration is not None or self.current is not None
 
 
 @dataclass(frozen=True)
@@ -40,6 +63,8 @@ class Coordinates:
         beam: or None for a rigid arm.
         spread: takes rows of the beam to rows of the arm.
         position: of the sensor along the beam, from the hub's axis [m]; (arms,) of stacked arms.
+        drive: the motor's current, or None where the arm's drive gives none.
+        hub_body: of the hub: 0, or the motor's where a joint's spring lies behind the hub.
     """
 
     size: int
@@ -48,16 +73,32 @@ class Coordinates:
     beam: Beam | None
     spread: Callable[[Matrix], Matrix]
     position: ArrayLike = 0.0
+    hub_body: int = 0
+    drive: Current | None = None
 
     @property
     def hub(self) -> Matrix:
-        """Angle of the hub [rad]."""
+        """Angle of the hub [rad], in front of a joint's spring."""
+        return self._angle(self.hub_body, 1.0)
+
+    @property
+    def link(self) -> Matrix:
+        """Angle of the link or of the beam's root line [rad], behind the spring of joint or gears."""
         return self._angle(0, 1.0)
 
     @property
     def motor(self) -> Matrix:
         """Angle of the motor's shaft [rad], gear ratio times that of the hub where the gears are stiff."""
         return self._angle(self.body, self.gear_ratio)
+
+    @property
+    def current(self) -> Current:
+        """Current of the motor [A]."""
+        if self.drive is None:
+            raise InputError(
+                "measures the motor's current, which a torque drive, a servo with limits and a sagging supply do not give"
+            )
+        return self.drive
 
     def _angle(self, body: int, ratio: float | Matrix) -> Matrix:
         row = np.zeros((*np.shape(self.gear_ratio), self.size))
@@ -112,8 +153,8 @@ class Channel:
 
 
 def time_constant(reading: Reading, channel: Channel) -> float | Matrix:
-    """Compute the time constant [s] of a channel's filter; a reading of an acceleration, which jumps, always has one."""
-    if reading.acceleration is None:
+    """Compute the time constant [s] of a channel's filter; a reading that jumps always has one."""
+    if not reading.jumps:
         return channel.filter
     least: float | Matrix = np.maximum(channel.filter, FASTEST_ACCELEROMETER)
     return least

@@ -16,7 +16,7 @@ from flexarm_env.plant.propagate import inlined_dot
 def apply_sensor_laws(d: Numbers, n: Places, s: Numbers, out: Numbers, first: int) -> None:
     """Apply the sensors' laws to readings."""
     mode, place = int(s[at.MODE]), n[at.SENSOR_LAWS]
-    angle = angle_of(d, n, s, mode, 0, Segment(s, at.Z_START))
+    angle = angle_of(d, n, s, mode, n[at.HUB_BODY], Segment(s, at.Z_START))
     motor_angle = d[at.GEAR_RATIO] * angle_of(d, n, s, mode, n[at.BODIES] - 1, Segment(s, at.Z_START))
     for j in range(n[place]):
         law = place + 1 + 3 * j

@@ -37,13 +37,17 @@ def applied_offset(
 @njit
 def load_now(d: Numbers, n: Places, s: Numbers, mode: int) -> float:
     """Compute the present torque [Nm, arm side] in the gears, as far as laws depend on it."""
-    if not n[at.VARYING] or n[at.BODIES] == 1:
-        return gear_load(d, n, s, mode, 0.0, 0.0)
+    if not n[at.VARYING] or (n[at.BODIES] == 1 and n[at.DRIVE_FEEDBACK] == at.NO_FEEDBACK):
+        return gear_load(d, n, s, mode, 0.0, 0.0, 0.0, 0.0)
     here, size = record(n, mode), 2 * n[at.BLOCKS]
     z = Segment(s, at.Z_START)
-    windup = angle_of(d, n, s, mode, 1, z) - angle_of(d, n, s, mode, 0, z)
+    if n[at.BODIES] == 1:
+        speed = dot(d, here + n[at.SPEED], s, at.Z_START, size)
+        return gear_load(d, n, s, mode, 0.0, 0.0, angle_of(d, n, s, mode, 0, z), speed)
+    motor = angle_of(d, n, s, mode, 1, z)
+    windup = motor - angle_of(d, n, s, mode, 0, z)
     rate = dot(d, here + n[at.SPEED] + size, s, at.Z_START, size) - dot(d, here + n[at.SPEED], s, at.Z_START, size)
-    return gear_load(d, n, s, mode, windup, rate)
+    return gear_load(d, n, s, mode, windup, rate, motor, 0.0)
 
 
 @njit

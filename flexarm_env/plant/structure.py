@@ -11,7 +11,7 @@ import numpy as np
 
 from flexarm_env.errors import InputError
 from flexarm_env.plant.beam import Beam, Matrix, spread_out, turned
-from flexarm_env.plant.reading import Channel, Coordinates, Reading, time_constant
+from flexarm_env.plant.reading import Channel, Coordinates, Current, Reading, time_constant
 
 #: Drivers of the linear part: the command, dry friction and non-linear torque on hub and motor, the constant 1,
 #: the side on which the gears touch (−1, 0, 1), and the angles of a held hub and a held motor.
@@ -22,7 +22,7 @@ COMMAND, HUB_TORQUE, MOTOR_TORQUE, ONE, GEAR_SIDE, HELD_HUB, HELD_MOTOR = range(
 Key = tuple[tuple[Any, ...], tuple[tuple[Any, ...], ...]]
 
 #: Quantities that arms of one kind have in common.
-WHOLE = ("elements", "sensors")
+WHOLE = ("elements", "has_joint", "sensors")
 #: Frequency of a motor on touching gears with the hub held [rad/s]: where backlash requires a separate motor but no compliance
 #: is given, stiff enough that windup stays below a pot's resolution; and on gears that are as good as rigid.
 STIFF_GEARS, RIGID_GEARS = 960.0, 48e3
@@ -50,6 +50,20 @@ class Structure:
     hub_inertia: float
     resistance: float = 0.0  # 0: current drive
     motor_viscous_share: float = 0.0
+    efficiency: float = 1.0  # of motor and gears
+    command_gain: float = 1.0  # of the amplifier
+    position_gain: float = 0.0  # of a servo [V/rad]; 0: the command is a current, a voltage or a torque
+    rate_gain: float = 0.0  # of a servo [V s/rad]
+    largest_voltage: float = 0.0  # 0: no limit
+    largest_current: float = 0.0
+    supply_voltage: float = 0.0
+    supply_resistance: float = 0.0
+    has_joint: bool = False  # whether the hub is in front of the gears' spring
+    front_inertia: float = 0.0  # of the hub in front of a joint, part of the motor's
+    link_moment: float = 0.0  # of a rigid link: mass times distance of its centre
+    fixture_compliance: float = 0.0
+    fixture_inertia: float = 0.0
+    fixture_damping_time: float = 0.0
     elements: int = 0  # 0: a rigid arm
     length: float = 0.0
     mass_per_length: float = 0.0
@@ -96,6 +110,11 @@ class Structure:
         return exceeds(self.root_compliance * self.bending_stiffness, LEAST_ROOT_SHARE * self.length)
 
     @property
+    def soft_fixture(self) -> bool:
+        """Whether the machine stands on a spring that can be seen."""
+        return exceeds(self.fixture_compliance * self.fixture_inertia, 1.0 / RIGID_GEARS**2)
+
+    @property
     def gear_stiffness(self) -> float:
         """Stiffness of the touching gears, arm side [Nm/rad]."""
         return 1.0 / self.gear_compliance if self.soft_gears else STIFF_GEARS**2 * self._motor_side
@@ -106,9 +125,30 @@ class Structure:
         return 1.0 / self.resistance if exceeds(self.resistance, 0.0) else 1.0
 
     @property
+    def torque_by_amp(self) -> float:
+        """Drive torque per motor current, arm side [Nm/A]."""
+        return self.efficiency * self.gear_ratio * self.torque_constant
+
+    @property
+    def back_emf(self) -> float:
+        """Voltage per speed of the motor's body, arm side [V s/rad]."""
+        return self.gear_ratio * self.torque_constant
+
+    @property
+    def is_servo(self) -> bool:
+        """Whether the command is the goal of a position loop."""
+        return exceeds(self.position_gain, 0.0)
+
+    @property
+    def has_limits(self) -> bool:
+        """Whether voltage or current of the drive depend on the motion otherwise than in proportion."""
+        limits = (self.largest_voltage, self.largest_current) if self.is_servo else ()
+        return any(exceeds(limit, 0.0) for limit in (*limits, self.supply_resistance))
+
+    @property
     def torque_by_command(self) -> float:
-        """Drive torque per command at rest, arm side [Nm/A or Nm/V]."""
-        return self.gear_ratio * self.torque_constant * self.amps_by_command
+        """Drive torque per command at rest, arm side [Nm/A, Nm/V or, of a servo's position error, Nm/rad]."""
+        return self.torque_by_amp * self.amps_by_command * self.command_gain * (self.position_gain if self.is_servo else 1.0)
 
 
 def stacked(structures: Sequence[Structure]) -> Structure:
@@ -119,7 +159,7 @@ def stacked(structures: Sequence[Structure]) -> Structure:
         channels = [structure.sensors[signal] for structure in structures]
         rows = np.array([(c.gain, c.offset, c.filter, c.position) for c in channels])
         values.setdefault("sensors", {})[signal] = Channel(channels[0].reading, channels[0].strain, *rows.T)
-    return Structure(elements=first.elements, **values)
+    return Structure(elements=first.elements, has_joint=first.has_joint, **values)
 
 
 @dataclass
@@ -179,7 +219,7 @@ def _assemble_one(key: Key) -> LinearModel:
 
 
 def _assemble(s: Structure) -> LinearModel:
-    names = ["hub"] + (["motor"] if s.separate_motor else [])
+    names = ["hub"] + (["motor"] if s.separate_motor else []) + (["fixture"] if s.soft_fixture else [])
     beam = Beam(s.elements, s.length, s.mass_per_length, s.bending_stiffness) if s.elements else None
     # a beam coordinate stands where its own numbering puts it, the root's slope only if it can turn
     kept = [] if beam is None else ([1] if s.soft_root else []) + list(range(2, beam.size))
@@ -191,6 +231,8 @@ def _assemble(s: Structure) -> LinearModel:
     def spread(rows: Matrix) -> Matrix:
         wide = np.zeros((*rows.shape[:-1], size))
         wide[..., place] = rows[..., [0, *kept]]
+        if s.soft_fixture:  # what is measured from the fixed line turns with the fixture, too
+            wide[..., names.index("fixture")] = rows[..., 0]
         return wide
 
     if beam is not None:
@@ -200,7 +242,8 @@ def _assemble(s: Structure) -> LinearModel:
         stiffness[..., where[0], where[1]] += beam.stiffness[..., pick[0], pick[1]]
         damping[..., where[0], where[1]] += (spread_out(s.beam_damping) * beam.stiffness)[..., pick[0], pick[1]]
         tip = spread(beam.deflection_rows(beam.length[..., None], absolute=True))
-        mass += spread_out(s.tip_mass + s.payload) * (turned(tip) * tip)
+        own_tip = _without(tip, names, "fixture")
+        mass += spread_out(s.tip_mass + s.payload) * (turned(own_tip) * own_tip)
         turn = np.zeros(size)
         turn[0] = turn[-1] = 1.0
         mass += spread_out(s.tip_inertia) * np.outer(turn, turn)
@@ -208,14 +251,22 @@ def _assemble(s: Structure) -> LinearModel:
             root = names.index("root")
             stiffness[..., root, root] += 1.0 / s.root_compliance
     motor = names.index("motor") if s.separate_motor else 0
-    mass[..., 0, 0] += s.hub_inertia
+    mass[..., 0, 0] += s.hub_inertia + (0.0 if beam is not None else s.payload * s.length**2)
+    if s.soft_fixture:
+        mass = _on_fixture(s, names, motor, mass, stiffness, damping)
     mass[..., motor, motor] += s.gear_ratio**2 * s.motor_inertia
     share = s.motor_viscous_share if s.separate_motor else 1.0
     damping[..., motor, motor] += s.viscous * share
     damping[..., 0, 0] += s.viscous * (1.0 - share)
     stiffness[..., 0, 0] += s.hub_stiffness
     model = _drive(s, names, motor, mass, damping, stiffness)
-    _sensors(s, model, Coordinates(size, motor, s.gear_ratio, beam, spread))
+    hub = motor if s.has_joint else 0
+    _sensors(s, model, Coordinates(size, motor, s.gear_ratio, beam, spread, hub_body=hub, drive=_current(s, size, motor)))
+    if beam is None and exceeds(s.link_moment, 0.0):
+        model.beam_force = np.array(model.beam_force)
+        model.beam_force[..., 0, 0] += s.payload * s.length / s.link_moment
+        if s.soft_fixture:
+            model.beam_force[..., names.index("fixture"), 0] = model.beam_force[..., 0, 0]
     if beam is not None:
         places, weights = beam.drag_points()
         rows = spread(beam.deflection_rows(places, absolute=True))
@@ -225,6 +276,34 @@ def _assemble(s: Structure) -> LinearModel:
         model.beam_velocity = np.concatenate([rows, np.zeros_like(rows[..., :1, :])], axis=-2)
         model.beam_force = np.concatenate([drag, ((own + hung) / own[..., :1])[..., None]], axis=-1)
     return model
+
+
+def _without(rows: Matrix, names: list[str], name: str) -> Matrix:
+    """Copy rows on the coordinates with 0 for the named one, if there is such a coordinate."""
+    if name not in names:
+        return rows
+    copy = rows.copy()
+    copy[..., names.index(name)] = 0.0
+    return copy
+
+
+def _on_fixture(s: Structure, names: list[str], motor: int, mass: Matrix, stiffness: Matrix, damping: Matrix) -> Matrix:
+    """Put the stator on a damped spring; return the mass matrix, without the motor's inertia at its own coordinate.
+
+    Hub and beam turn by their own angle and the fixture's; the rotor by gear ratio times its own and the fixture's.
+    """
+    fixture = names.index("fixture")
+    turn = np.eye(len(names))
+    turn[0, fixture] = 1.0
+    mass = turn.T @ mass @ turn
+    across = s.gear_ratio * s.motor_inertia + s.front_inertia * (1.0 - 1.0 / s.gear_ratio)
+    mass[..., fixture, motor] += across
+    mass[..., motor, fixture] += across
+    own = s.motor_inertia + s.front_inertia * (1.0 - 1.0 / s.gear_ratio**2)
+    mass[..., fixture, fixture] += s.fixture_inertia + own
+    stiffness[..., fixture, fixture] += 1.0 / s.fixture_compliance
+    damping[..., fixture, fixture] += s.fixture_damping_time / s.fixture_compliance
+    return mass
 
 
 def _node_names(elements: int) -> list[str]:
@@ -237,8 +316,8 @@ def _drive(s: Structure, names: list[str], motor: int, mass: Matrix, damping: Ma
     drivers[..., 0, HUB_TORQUE] = 1.0
     drivers[..., motor, MOTOR_TORQUE] = 1.0 if s.separate_motor else 0.0
     drivers[..., 0, ONE] = s.hub_torque
-    torque_per_amp, amps_per_command = s.gear_ratio * s.torque_constant, s.amps_by_command
-    amps_per_speed = -torque_per_amp / s.resistance if exceeds(s.resistance, 0.0) else 0.0
+    torque_per_amp = s.torque_by_amp
+    amps_per_command, amps_per_angle, amps_per_speed = _amps(s)
     lagged = exceeds(s.current_lag, SHORTEST_LAG)
     extra = int(lagged)
     model = LinearModel(
@@ -262,11 +341,33 @@ def _drive(s: Structure, names: list[str], motor: int, mass: Matrix, damping: Ma
         model.from_extra[..., motor, 0] = torque_per_amp
         model.extra[..., 0, 0] = -1.0 / s.current_lag
         model.extra_from_input[..., 0, COMMAND] = amps_per_command / s.current_lag
+        model.extra_from_motion[..., 0, motor] = amps_per_angle / s.current_lag
         model.extra_from_motion[..., 0, size + motor] = amps_per_speed / s.current_lag
     else:
         drivers[..., motor, COMMAND] = torque_per_amp * amps_per_command
+        stiffness[..., motor, motor] -= torque_per_amp * amps_per_angle
         damping[..., motor, motor] -= torque_per_amp * amps_per_speed
     return model
+
+
+def _amps(s: Structure) -> tuple[Any, Any, Any]:
+    """Compute the motor current by command, and by angle and speed of the motor's body [A per unit], without limits and lag."""
+    per_command = s.amps_by_command * s.command_gain
+    per_speed = -s.back_emf / s.resistance if exceeds(s.resistance, 0.0) else 0.0
+    if not s.is_servo:
+        return per_command, 0.0, per_speed
+    return per_command * s.position_gain, -per_command * s.position_gain, per_speed - per_command * s.rate_gain
+
+
+def _current(s: Structure, size: int, motor: int) -> Current | None:
+    """Express the motor's current; None where limits make it another function of the motion."""
+    if s.has_limits:
+        return None
+    rows = np.zeros((2, *np.shape(s.hub_inertia), size))
+    if exceeds(s.current_lag, SHORTEST_LAG):
+        return Current(0.0, rows[0], rows[1], lagged=1.0)
+    per_command, rows[0, ..., motor], rows[1, ..., motor] = _amps(s)
+    return Current(per_command, rows[0], rows[1])
 
 
 def _sensors(s: Structure, model: LinearModel, coordinates: Coordinates) -> None:
@@ -290,7 +391,12 @@ def _sensors(s: Structure, model: LinearModel, coordinates: Coordinates) -> None
             row[..., :size] = reading.position
         if reading.speed is not None:
             row[..., size:] = reading.speed
-        row *= np.asarray(channel.gain)[..., None]
+        if reading.current is not None:
+            row[..., :size] += reading.current.position
+            row[..., size:] += reading.current.speed
+        # a filter behind a reading that jumps stores it without gain, so that the gain moves no rounding error of the motion
+        inner, outer = (1.0, channel.gain) if reading.jumps else (channel.gain, 1.0)
+        row *= np.asarray(inner)[..., None]
         model.output_from_input[..., i, ONE] = channel.offset
         if i not in filtered:
             model.output[..., i, : 2 * size] = row
@@ -298,13 +404,18 @@ def _sensors(s: Structure, model: LinearModel, coordinates: Coordinates) -> None
         place = before + filtered.index(i)
         if reading.acceleration is not None:
             # A filtered acceleration is linear in the state: the speed less the filtered speed, over the time constant.
-            rate = reading.acceleration * (np.asarray(channel.gain) / filters[i])[..., None]
+            rate = reading.acceleration * np.asarray(1.0 / filters[i])[..., None]
             row[..., size:] -= rate
-            model.output[..., i, size : 2 * size] = rate
+            model.output[..., i, size : 2 * size] = rate * np.asarray(outer)[..., None]
             model.settled[..., place, :] = row
+        if reading.current is not None:
+            model.settled[..., place, :] = row
+            model.extra_from_input[..., place, COMMAND] = reading.current.command / filters[i]
+            if reading.current.lagged:
+                model.extra[..., place, 0] = 1.0 / filters[i]
         model.extra[..., place, place] = -1.0 / filters[i]
         model.extra_from_motion[..., place, :] = row / np.asarray(filters[i])[..., None]
-        model.output[..., i, 2 * size + place] = 1.0
+        model.output[..., i, 2 * size + place] = outer
 
 
 def _reading(signal: str, channel: Channel, coordinates: Coordinates) -> Reading:

@@ -118,9 +118,11 @@ def check_names(names: Sequence[str]) -> str:
         raise InputError("has no time column; add 'time [s]'")
     inputs = [name for name in INPUTS if name in names]
     if not inputs:
-        raise InputError("has neither 'current [A]' nor 'voltage [V]'; add the input of the drive")
+        raise InputError(
+            "has neither 'current [A]' nor 'voltage [V]', 'torque [N*m]' or 'position [rad]'; add the input of the drive"
+        )
     if len(inputs) > 1:
-        raise InputError("has both current and voltage; keep the one that the drive was commanded with")
+        raise InputError(f"has both {' and '.join(inputs)}; keep the one that the drive was commanded with")
     return inputs[0]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 from flexarm_env.experiments.stated import stated_by, with_stated
 from flexarm_env.identify.explain.hub_torque import acts_on_hub, arguments, law_torque
+from flexarm_env.machine import weight
 from flexarm_env.plant.structure import assemble
 from flexarm_env.recordings.recording import Recording
 
@@ -54,7 +55,7 @@ def predicted_and_recorded(arm: Arm, recording: Recording, recipe: Recipe) -> tu
     Raises:
         InputError: for an arm with a beam, or under voltage.
     """
-    if arm.has("beam") or arm.constants["drive"]["resistance"] > 0.0:
+    if arm.has("beam") or arm.input not in ("current", "torque"):
         raise InputError(f"arm '{arm.name}': inverse dynamics are those of a rigid arm that is driven by current or torque")
     arm = with_stated(arm, stated_by(arm, recording))
     rate, time, angle = 1.0 / recording.sample_time, recording.time, recording.signals["arm_angle"]
@@ -64,7 +65,7 @@ def predicted_and_recorded(arm: Arm, recording: Recording, recipe: Recipe) -> tu
     else:
         speed = recording.signals["motor_speed"] / (arm.value("drive.gear_ratio") * arm.value("sensors.motor_speed.gain"))
     by_command, recorded = arm.structure().torque_by_command, _behind_drive(arm, recording)
-    inertial = float(assemble(arm.structure()).mass.sum()) * np.gradient(speed, time)
+    inertial = _inertia(arm) * np.gradient(speed, time)
     torque = inertial - _resisting(arm, inertial - by_command * recorded, angle, speed, time, recipe.at_rest)
     return _filtered(torque / by_command, recipe, rate), _filtered(recorded, recipe, rate)
 
@@ -82,12 +83,32 @@ def _resisting(arm: Arm, missing: Floats, angle: Floats, speed: Floats, time: Fl
     """
     names = [name for name, _ in arm.present() if acts_on_hub(arm, name)]
     dry = [name for name in names if arm.known[name].port("friction")]
-    others = law_torque(arm, [name for name in names if name not in dry], angle, speed, time)
+    others = law_torque(arm, [name for name in names if name not in dry], angle, speed, time) + _weight(arm, angle)
     sliding = law_torque(arm, dry, angle, speed, time)
     if not at_rest:
         return others + sliding
     most = np.abs(law_torque(arm, dry, angle, np.full_like(speed, at_rest), time))
     return others + np.where(np.abs(speed) <= at_rest, np.clip(missing - others, -most, most), sliding)
+
+
+def _inertia(arm: Arm) -> float:
+    """Compute all that turns with a rigid arm [kg m²]; an effect that lets a part of it give way leaves that out."""
+    rigid = replace(arm, effects={})
+    parts = len(assemble(rigid.structure()).names)
+    for name, values in arm.effects.items():
+        with_it = replace(rigid, effects={**rigid.effects, name: values})
+        rigid = with_it if len(assemble(with_it.structure()).names) == parts else rigid
+    return float(assemble(rigid.structure()).mass.sum())
+
+
+def _weight(arm: Arm, angle: Floats) -> Floats:
+    """Compute the torque (samples,) of the weight of a link, and of a payload at its tip [Nm]."""
+    largest, uphill = weight(arm.constants)
+    if not largest:
+        return np.zeros_like(angle)
+    link, structure = arm.constants["link"], arm.structure()
+    hung = structure.payload * link["length"] / (link["mass"] * link["centre"])
+    return largest * (1.0 + hung) * np.sin(angle - uphill)
 
 
 def _behind_drive(arm: Arm, recording: Recording) -> Floats:

@@ -47,29 +47,24 @@ class CommandError:
 
     Attributes:
         recipe: by which motion and command are filtered.
-        relative: whether it is 100 ‖e‖/‖command‖ [%]; else the rms error [A].
+        unit: "%" for 100 ‖e‖/‖command‖, else that of the command, of the rms error.
     """
 
     recipe: Recipe
-    relative: bool = False
+    unit: str = "%"
     higher_is_better: ClassVar[bool] = False
-
-    @property
-    def unit(self) -> str:
-        """Of the figure."""
-        return "%" if self.relative else "A"
 
     @property
     def words(self) -> str:
         """Describe the figure."""
-        return f"{'relative' if self.relative else 'rms'} error of the command, by inverse dynamics"
+        return f"{'relative' if self.unit == '%' else 'rms'} error of the command, by inverse dynamics"
 
     def of(self, arm: Arm, recordings: Sequence[Recording]) -> float:
         """Compute the figure over all samples."""
         pairs = [predicted_and_recorded(arm, recording, self.recipe) for recording in recordings]
         predicted, recorded = (np.concatenate(part) for part in zip(*pairs, strict=True))
         error = float(np.linalg.norm(recorded - predicted))
-        return 100.0 * error / float(np.linalg.norm(recorded)) if self.relative else error / float(np.sqrt(len(recorded)))
+        return 100.0 * error / float(np.linalg.norm(recorded)) if self.unit == "%" else error / float(np.sqrt(len(recorded)))
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,10 @@ def _swing(cells: str, number: int) -> Record:
     return Record(_PENDULUM, f"{cells} {number}", {"_id{1}": f"_{cells}{{{number}}}"})
 
 
+def _servo(time: str) -> Record:
+    return Record(f"bam_xl330/2026-01-15_{time}.json", time)
+
+
 RIGS: tuple[Rig, ...] = (
     Rig(
         name="emps",
@@ -26,7 +30,7 @@ RIGS: tuple[Rig, ...] = (
         arm="emps",
         training=(Record("emps/DATA_EMPS.mat"),),
         held_out=(Record("emps/DATA_EMPS_PULSES.mat"),),
-        metric=CommandError(Recipe(angle=100.0, dropped=49, decimation=10), relative=True),
+        metric=CommandError(Recipe(angle=100.0, dropped=49, decimation=10)),
         published=(Published("symmetric friction", 5.9824), Published("asymmetric viscous friction", 5.36)),
         goal=5.36,
     ),
@@ -57,9 +61,9 @@ RIGS: tuple[Rig, ...] = (
         title="base joint of an industrial robot",
         source="Mamedov, dynamic_calibration: joint 1 of a UR10e",
         arm="ur10e-joint1",
-        training=(Record("ur10e/joint_1.csv", "first half", stop=0.5),),
-        held_out=(Record("ur10e/joint_1.csv", "second half", start=0.5),),
-        metric=CommandError(Recipe(both=5.0, at_rest=0.005)),
+        training=(Record("ur10e/joint_1.csv", "second half", start=0.5),),  # it ends at rest, which shows dry friction
+        held_out=(Record("ur10e/joint_1.csv", "first half", stop=0.5),),
+        metric=CommandError(Recipe(both=5.0, at_rest=0.005), "A"),
         published=(
             Published("regression in sample: inertia", 2.71),
             Published("and viscous friction", 0.613),
@@ -75,7 +79,7 @@ RIGS: tuple[Rig, ...] = (
         arm="dfki-pendulum",
         training=(Record("dfki_pendulum/ddp.csv"),),
         held_out=(Record("dfki_pendulum/pd_identification.csv"), Record("dfki_pendulum/energy_shaping.csv")),
-        metric=CommandError(Recipe(both=10.0)),
+        metric=CommandError(Recipe(both=10.0), "Nm"),
     ),
     Rig(
         name="multiarm",
@@ -85,5 +89,20 @@ RIGS: tuple[Rig, ...] = (
         training=tuple(_swing("id", number) for number in range(1, 5)),
         held_out=tuple(_swing("vad", number) for number in range(1, 3)),
         metric=AngleError(),
+    ),
+    Rig(
+        name="xl330",
+        title="small servo with a pendulum",
+        source="Rhoban, bam: XL330, logs of January 2026",
+        arm="xl330-pendulum",
+        training=tuple(map(_servo, ("10h28m10", "10h28m24", "10h29m47", "10h30m02"))),  # firmware gains 100 and 800
+        held_out=tuple(map(_servo, ("10h28m42", "10h28m57", "10h29m14", "10h29m29"))),  # 200 and 400
+        metric=AngleError(mean_absolute=True),
+        published=(
+            Published("viscous and Coulomb friction (M1), on sixteen logs", 0.0819),
+            Published("and Stribeck friction (M2)", 0.0812),
+            Published("with load dependence (M3)", 0.0691),
+        ),
+        goal=0.055,
     ),
 )

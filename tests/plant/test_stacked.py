@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from one_joint import elastic_joint, pendulum, servo
 from plant_arms import noise, relative
 
 from flexarm_env import Arm
@@ -19,12 +20,21 @@ KINDS = {
     "two bodies": ("thesis-fem", {}, {"drive.gear_stiffness": (1e3, 1e4), "hub.inertia": (1e-3, 2e-3)}),
     "backlash": ("thesis", {}, {"effects.backlash.gap": (0.01, 0.05), "effects.viscous.coefficient": (0.05, 0.15)}),
     "rigid": ("emps", {}, {"hub.inertia": (50.0, 100.0)}),
+    "pendulum": (
+        "pendulum",
+        {"payload": {}},
+        {"link.mass": (0.3, 0.6), "link.tilt": (0.5, 1.5), "effects.payload.mass": (0.1, 0.2)},
+    ),
+    "joint": ("elastic joint", {"stiffening": {}}, {"joint.stiffness": (1.0, 2.0), "hub.inertia": (1e-4, 2e-4)}),
+    "servo": ("servo", {"coulomb": {}}, {"drive.error_gain": (0.002, 0.004), "drive.supply_voltage": (6.0, 8.0)}),
+    "fixture": ("pendulum", {"fixture_compliance": {}}, {"effects.fixture_compliance.stiffness": (100.0, 200.0)}),
 }
+MACHINES = {arm.name: arm for arm in (pendulum(), elastic_joint(), servo())}
 
 
 def drawn(kind, count=9):
     name, effects, ranges = KINDS[kind]
-    arm = Arm.load(name)
+    arm = MACHINES.get(name) or Arm.load(name)
     for effect, values in effects.items():
         arm = arm.with_effect(effect, **values)
     for path in ranges:

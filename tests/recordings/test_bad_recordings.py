@@ -36,7 +36,7 @@ BAD = {
     "no bracket": (GOOD.replace(" [rad]", ""), ["column 3", "arm_angle [rad]"]),
     "parentheses": (GOOD.replace("[rad]", "(rad)"), ["column 3", "arm_angle [rad]"]),
     "unknown column": (GOOD.replace("arm_angle", "arm_angel"), ["column 3", "did you mean 'arm_angle'"]),
-    "extra column": (GOOD.replace("[rad]", "[rad],torque [N]", 1), ["column 4", "'torque'", "time"]),
+    "extra column": (GOOD.replace("[rad]", "[rad],force [N]", 1), ["column 4", "'force'", "time"]),
     "nameless column": (GOOD.replace("[rad]", "[rad],", 1), ["column 4", "''"]),
     "no time": ("current [A],arm_angle [rad]\n0,1\n1,2\n", ["no time", "time [s]"]),
     "no input": ("time [s],arm_angle [rad]\n0,1\n1,2\n", ["neither", "current", "voltage"]),

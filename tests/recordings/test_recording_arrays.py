@@ -23,7 +23,7 @@ from flexarm_env.sensors import known_sensors
 @pytest.mark.parametrize(
     ("changes", "wanted"),
     [
-        ({"input_kind": "torque"}, "unknown input 'torque'"),
+        ({"input_kind": "force"}, "unknown input 'force'"),
         ({"signals": {"arm_angel": np.zeros(5)}}, "did you mean 'arm_angle'"),
         ({"signals": {}}, "no measured signal"),
         ({"command": np.zeros(4)}, "lengths differ"),

@@ -144,7 +144,7 @@ def test_every_rig_is_read_where_it_lies(measurements):
 def test_the_parts_and_cells_of_a_file_are_the_right_ones(measurements):
     ur10e, swing = (next(rig for rig in table.RIGS if rig.name == name) for name in ("ur10e", "multiarm"))
     posed = pose(ur10e, measurements)
-    first, second = posed.training[0], posed.held_out[0]
+    second, first = posed.training[0], posed.held_out[0]
     assert second.conditions["start"] == pytest.approx(first.duration + first.sample_time, abs=0.02)
     posed = pose(swing, measurements)
     assert [run.name for run in posed.training] == ["id 1", "id 2", "id 3", "id 4"]

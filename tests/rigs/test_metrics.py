@@ -55,7 +55,7 @@ def test_the_current_error_of_ur10e_is_that_of_a_regression(measurements):
     columns = [smooth(np.gradient(speed, time)), smooth(speed), smooth(np.sign(speed))]
     arm = Arm.load(UR10E.arm)
     run = replace(UR10E.training[0], stop=1.0).read(measurements, arm)
-    metric = CommandError(Recipe(both=5.0))
+    metric = CommandError(Recipe(both=5.0), "A")
     paths = ("hub.inertia", "effects.viscous.coefficient", "effects.coulomb.torque")
     for count, printed in ((1, 2.71), (2, 0.613), (3, 0.184)):
         matrix = np.column_stack(columns[:count])
@@ -75,10 +75,10 @@ def test_dry_friction_holds_an_arm_at_rest_up_to_its_size():
     run = simulate(arm, ramp, noise=False)
     still = run.signals["motor_speed"] == 0.0
     assert still.mean() == pytest.approx(2 / 3, abs=0.01)
-    assert CommandError(Recipe(at_rest=1e-9)).of(arm, [run.part(0.0, 1.9)]) < 1e-9
-    assert CommandError(Recipe()).of(arm, [run.part(0.0, 1.9)]) > 0.5
+    assert CommandError(Recipe(at_rest=1e-9), "A").of(arm, [run.part(0.0, 1.9)]) < 1e-9
+    assert CommandError(Recipe(), "A").of(arm, [run.part(0.0, 1.9)]) > 0.5
     weaker = arm.with_values({"effects.coulomb.torque": 0.5 * 11.9})
-    assert CommandError(Recipe(at_rest=1e-9)).of(weaker, [run.part(1.5, 1.9)]) == pytest.approx(0.35, abs=0.02)
+    assert CommandError(Recipe(at_rest=1e-9), "A").of(weaker, [run.part(1.5, 1.9)]) == pytest.approx(0.35, abs=0.02)
 
 
 def test_a_delay_and_a_dead_zone_of_the_drive_count():
@@ -86,7 +86,7 @@ def test_a_delay_and_a_dead_zone_of_the_drive_count():
     for effect, values in (("input_delay", {"delay": 0.05}), ("dead_zone", {"width": 1.0})):
         true = arm.with_effect(effect, **values)
         run = simulate(true, "sweep", duration=6.0, rate=500.0, noise=False)
-        metric = CommandError(Recipe(both=5.0), relative=True)
+        metric = CommandError(Recipe(both=5.0))
         assert metric.of(true, [run]) < 0.2 * metric.of(arm, [run])
 
 

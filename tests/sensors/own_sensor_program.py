@@ -21,7 +21,7 @@ from flexarm_env import Arm, Recording, compare, fit, simulate  # noqa: E402
 from flexarm_env.arm_file import shipped_arms  # noqa: E402
 from flexarm_env.cli import run  # noqa: E402
 
-OWN = "\n[sensors.hub_acceleration]\n\n[sensors.tip_speed]\n\n[sensors.tip_deflection]\n"
+OWN = "\n[sensors.shaft_acceleration]\n\n[sensors.tip_speed]\n\n[sensors.tip_deflection]\n"
 
 
 def arm_with(name: str, extra: str) -> Arm:
@@ -32,16 +32,16 @@ def arm_with(name: str, extra: str) -> Arm:
 
 def rigid() -> dict:
     """A pulse on a rigid arm with Coulomb friction alone."""
-    arm = arm_with("cu-rigid", "\n[sensors.hub_acceleration]\n")
+    arm = arm_with("cu-rigid", "\n[sensors.shaft_acceleration]\n")
     for effect in arm.effects:
         arm = arm.without_effect(effect)
     arm = arm.with_effect("coulomb", torque=0.02)
     drive = arm.constants["drive"]
-    arm = arm.with_values({"sensors.hub_acceleration.filter": 5e-4})
+    arm = arm.with_values({"sensors.shaft_acceleration.filter": 5e-4})
     commands = np.where(np.arange(400) < 100, 3.0, 0.0)
     plant = arm.plant(1e-3)
     plant.place()
-    place = plant.signals.index("hub_acceleration")
+    place = plant.signals.index("shaft_acceleration")
     readings = plant.replay(commands)[:, place]
     # the back-EMF slows it, so the speed at that moment counts
     plant.place()
@@ -62,7 +62,7 @@ def sampling(arm: Arm) -> dict:
     plants = [arm.plant(5e-3), arm.plant(5e-4)]
     for plant in plants:
         plant.place()
-    column = plants[0].signals.index("hub_acceleration")
+    column = plants[0].signals.index("shaft_acceleration")
     coarse, fine = plants[0].replay(commands), plants[1].replay(np.repeat(commands, 10))[::10]
     return {"coarse": coarse[:, column].tolist(), "fine": fine[:, column].tolist()}
 
@@ -102,7 +102,7 @@ def fits(arm: Arm) -> dict:
 def observations(arm: Arm) -> dict:
     env = gym.make("FlexArm/Slew-v0", arm=arm, physical=True)
     seen = [env.reset(seed=1)[0]] + [env.step(np.ones(1, np.float32))[0] for _ in range(20)]
-    place = arm.signals.index("hub_acceleration")
+    place = arm.signals.index("shaft_acceleration")
     return {
         "observation": list(env.observation_space.shape),
         "bounds": env.observation_space.high[[place, arm.signals.index("tip_speed")]].tolist(),

@@ -17,7 +17,7 @@ from flexarm_env.errors import InputError
 from flexarm_env.sensors import Reading, Sensor, base
 from flexarm_env.sensors.checks import checked
 
-HUB_ACCELERATION = '''
+SHAFT_ACCELERATION = '''
 """An accelerometer on the hub."""
 
 from typing import ClassVar
@@ -25,12 +25,12 @@ from typing import ClassVar
 from flexarm_env.sensors import Reading, Sensor
 
 
-class HubAcceleration(Sensor):
+class ShaftAcceleration(Sensor):
     """Angular acceleration of the hub."""
 
-    name = "hub_acceleration"
+    name = "shaft_acceleration"
     unit = "rad/s**2"
-    label = "hub acceleration"
+    label = "shaft acceleration"
     typical = 20.0
     largest = 500.0
     defaults: ClassVar = {"noise": 0.5, "filter": 0.002}
@@ -69,7 +69,7 @@ PROGRAM = Path(__file__).with_name("own_sensor_program.py")
 def found(tmp_path_factory) -> dict:
     folder = tmp_path_factory.mktemp("own")
     (folder / "sensors").mkdir()
-    (folder / "sensors" / "hub_acceleration.py").write_text(HUB_ACCELERATION, encoding="utf-8")
+    (folder / "sensors" / "shaft_acceleration.py").write_text(SHAFT_ACCELERATION, encoding="utf-8")
     (folder / "sensors" / "tip_speed.py").write_text(TIP_SPEED, encoding="utf-8")
     one = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     paths = os.pathsep.join([str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")])
@@ -82,7 +82,7 @@ def found(tmp_path_factory) -> dict:
 
 
 def test_it_is_simulated_and_written_with_its_unit(found):
-    assert "hub_acceleration [rad/s**2]" in found["header"]
+    assert "shaft_acceleration [rad/s**2]" in found["header"]
     assert "tip_speed [m/s]" in found["header"]
     assert found["same again"]
 
@@ -104,8 +104,8 @@ def test_the_tip_moves_with_the_hub_and_the_beam(found):
 
 def test_it_is_compared_and_shown_under_its_label(found):
     assert found["compare"] == pytest.approx(1.0, abs=0.05)
-    assert {"hub_acceleration", "tip_speed"} <= set(found["compared"])
-    assert "hub acceleration" in found["table"]
+    assert {"shaft_acceleration", "tip_speed"} <= set(found["compared"])
+    assert "shaft acceleration" in found["table"]
     assert "tip speed" in found["table"]
     assert "rad/s²" in found["table"]
 

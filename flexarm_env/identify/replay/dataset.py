@@ -22,7 +22,6 @@ from flexarm_env.identify.replay.scales import scales_of
 from flexarm_env.identify.replay.start_fit import Stretch
 from flexarm_env.identify.replay.thinning import thin
 from flexarm_env.identify.settings import SETTINGS, Settings
-from flexarm_env.parameters import INPUTS
 from flexarm_env.plant.plant import NO_INTERVALS, Plant
 from flexarm_env.recordings.recording import Recording
 
@@ -168,8 +167,7 @@ def _replayed(arm: Arm, dataset: Dataset) -> list[Floats]:
 
 def _check(arm: Arm, recording: Recording, fewest: int) -> None:
     if recording.input_kind != arm.input:
-        other = next(kind for kind in INPUTS if kind != arm.input)
-        raise InputError(f"{recording.name} holds {other}, but arm '{arm.name}' is driven by {arm.input}")
+        raise InputError(f"{recording.name} holds {recording.input_kind}, but arm '{arm.name}' is driven by {arm.input}")
     check_stated(arm, recording)
     count = int(np.count_nonzero(share_of(_readings(arm, recording))))
     if count < fewest:

@@ -16,11 +16,25 @@ from flexarm_env.sensors import known_sensors
 def torque_scale(arm: Arm, runs: Sequence[Run]) -> float:
     """Estimate the rms of the drive's torque at the hub [Nm]; without a command, the torque that slows down a coasting arm."""
     drive = arm.constants["drive"]
+    if arm.input == "position":
+        return _servo_torque(arm, runs)
     per_command = drive["gear_ratio"] * drive["torque_constant"]
     if arm.input == "voltage":
         per_command /= drive["resistance"]
     command = float(np.sqrt(np.mean([np.mean(run.command**2) for run in runs])))
     return max(per_command * command, 0.0 if command > 0.0 else _slowing_torque(arm, runs), LEAST_COMMAND * per_command)
+
+
+def _servo_torque(arm: Arm, runs: Sequence[Run]) -> float:
+    """Estimate the rms torque [Nm] of a servo from goal and measured angle, within its limit of voltage; 1 mrad at least."""
+    structure, per_error = arm.structure(), arm.structure().torque_by_command
+    largest = structure.largest_voltage / structure.position_gain
+    angle = arm.signals.index("arm_angle") if "arm_angle" in arm.signals else -1
+    squares = []
+    for run in runs:
+        error = run.command - (run.measured[:, angle] if angle >= 0 else 0.0)
+        squares.append(np.nanmean(np.clip(error, -largest, largest) ** 2))
+    return per_error * max(float(np.sqrt(np.mean(squares))), LEAST_COMMAND)
 
 
 def _slowing_torque(arm: Arm, runs: Sequence[Run]) -> float:

@@ -1,0 +1,85 @@
+"""The linear part and the weight of an arm from its base constants."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from flexarm_env.plant.structure import Structure
+
+#: Standard gravity [m/s²].
+GRAVITY = 9.80665
+
+Constants = Mapping[str, Mapping[str, float]]
+
+
+def structure_of_constants(constants: Constants, command: str) -> Structure:
+    """Build the linear part of an arm without effects and sensors.
+
+    Args:
+        constants: base constants by section and key.
+        command: kind of the drive's command.
+
+    Example:
+        >>> from flexarm_env import Arm
+        >>> arm = Arm.load("thesis")
+        >>> structure_of_constants(arm.constants, arm.input).hub_inertia
+        0.00129
+    """
+    drive, hub = constants["drive"], constants["hub"]["inertia"]
+    beam, link, joint = (constants.get(section, {}) for section in ("beam", "link", "joint"))
+    structure = Structure(
+        gear_ratio=drive["gear_ratio"],
+        torque_constant=drive["torque_constant"],
+        # the hub turns with the motor in front of a joint, and with the link without one
+        motor_inertia=drive["motor_inertia"] + (hub / drive["gear_ratio"] ** 2 if joint else 0.0),
+        hub_inertia=0.0 if joint else hub,
+        resistance=drive["resistance"] if command in ("voltage", "position") else 0.0,
+        motor_viscous_share=drive["motor_viscous_share"],
+        gear_compliance=1.0 / drive["gear_stiffness"] if drive["gear_stiffness"] > 0.0 else 0.0,
+        efficiency=drive["efficiency"],
+        command_gain=drive["amplifier_gain"] or 1.0,
+        supply_voltage=drive["supply_voltage"],
+        front_inertia=hub if joint else 0.0,
+    )
+    if beam:
+        structure.elements, structure.length = int(beam["elements"]), beam["length"]
+        structure.mass_per_length, structure.bending_stiffness = beam["mass_per_length"], beam["bending_stiffness"]
+        structure.tip_mass, structure.tip_inertia = beam["tip_mass"], beam["tip_inertia"]
+    if command == "position":
+        _add_servo(structure, drive)
+    if link:
+        structure.hub_inertia += link["inertia"]
+        structure.length, structure.link_moment = link["length"], link["mass"] * link["centre"]
+    if joint:
+        structure.has_joint = True
+        structure.gear_compliance, structure.gear_damping_time = 1.0 / joint["stiffness"], joint["damping"] / joint["stiffness"]
+    return structure
+
+
+def _add_servo(structure: Structure, drive: Mapping[str, float]) -> None:
+    """Close the loop of a servo's firmware around the motor."""
+    per_duty = drive["error_gain"] * drive["supply_voltage"]
+    structure.position_gain, structure.rate_gain = drive["proportional"] * per_duty, drive["derivative"] * per_duty
+    structure.largest_voltage = drive["largest_duty"] * drive["supply_voltage"]
+    structure.largest_current = drive["current_limit"]
+
+
+def weight(constants: Constants) -> tuple[float, float]:
+    """Compute the largest torque of gravity about the axis [Nm] and the angle [rad] at which the arm balances upright.
+
+    Example:
+        >>> link = {"mass": 0.5, "centre": 0.2, "tilt": math.pi / 2, "hangs_at": 0.0}
+        >>> torque, uphill = weight({"link": link})
+        >>> round(torque, 4), round(uphill, 4)
+        (0.9807, 3.1416)
+    """
+    beam, link = constants.get("beam"), constants.get("link")
+    if beam is not None:
+        moment = beam["mass_per_length"] * beam["length"] ** 2 / 2.0 + beam["tip_mass"] * beam["length"]
+        return _turned(moment, beam)
+    return _turned(link["mass"] * link["centre"], link) if link is not None else (0.0, 0.0)
+
+
+def _turned(moment: float, section: Mapping[str, float]) -> tuple[float, float]:
+    return GRAVITY * moment * math.sin(section["tilt"]), section["hangs_at"] + math.pi
