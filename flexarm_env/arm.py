@@ -42,6 +42,7 @@ class Arm(Shown):
         fixed: paths of constants that a fit keeps.
         auto_noise: signals whose noise is estimated from the recordings, `noise = "auto"` in the file. Their noise is 0 here.
         columns: the map of columns of foreign recordings, or None.
+        conditions: by the name of a recording's condition, the path of the constant whose place its value takes.
         controller: the law under which recordings with a reference were made, or None.
         fitted: value, low and high end of the 90 % interval and unit of each fitted path.
         origin: recordings, command and seed of the fit.
@@ -65,6 +66,7 @@ class Arm(Shown):
     fixed: Sequence[str] = ()
     auto_noise: Sequence[str] = ()
     columns: Mapping[str, Any] | None = None
+    conditions: Mapping[str, str] = field(default_factory=dict)
     controller: ControlLaw | None = None
     fitted: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     origin: Mapping[str, Any] = field(default_factory=dict)
@@ -79,7 +81,8 @@ class Arm(Shown):
         """Read an arm file, or a shipped arm by its name.
 
         Args:
-            source: path of a TOML file, or "thesis", "thesis-fem", "cu-flexible", "cu-rigid", "emps".
+            source: path of a TOML file, or "thesis", "thesis-fem", or that of a real rig, such as "emps"; `shipped_arms`
+                lists them.
             known: catalogue of effects; the shipped and installed ones by default.
 
         Raises:

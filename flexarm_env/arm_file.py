@@ -12,6 +12,7 @@ from flexarm_env.effects import Catalogue
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import read_toml, write_whole
 from flexarm_env.parameters import INPUTS, LEVEL, SECTIONS, Parameter, check_bounds, defaults_of
+from flexarm_env.recordings.conditions import CONDITIONS
 from flexarm_env.recordings.messages import file_error
 from flexarm_env.sensors import known_sensors
 from flexarm_env.units import quantity
@@ -23,7 +24,8 @@ if TYPE_CHECKING:
 LEAST_RESISTANCE = 1e-6
 #: Noise of a sensor that is estimated from the recordings.
 AUTO = "auto"
-TOP = ("name", "description", "fixed", *SECTIONS, "sensors", "effects", "columns", "controller", "fitted", "origin")
+BESIDE = ("columns", "conditions", "controller", "fitted", "origin")
+TOP = ("name", "description", "fixed", *SECTIONS, "sensors", "effects", *BESIDE)
 
 
 def config_folders(kind: str) -> list[Path]:
@@ -36,8 +38,8 @@ def shipped_arms() -> dict[str, Path]:
     """List the files of the shipped arms by name.
 
     Example:
-        >>> sorted(shipped_arms())
-        ['cu-flexible', 'cu-rigid', 'emps', 'thesis', 'thesis-fem']
+        >>> sorted(shipped_arms())[:3]
+        ['cu-flexible', 'cu-rigid', 'dfki-pendulum']
     """
     return {path.stem: path for folder in config_folders("arms") for path in sorted(folder.glob("*.toml"))}
 
@@ -89,6 +91,7 @@ def arm_from_table(kind: type[Arm], table: Mapping[str, Any], name: str, known: 
         fixed=_fixed(table.get("fixed", []), constants, sensors),
         auto_noise=auto_noise,
         columns=_table(table, "columns") if "columns" in table else None,
+        conditions=_conditions(_table(table, "conditions", {}), constants),
         controller=law_from_table(table["controller"], command) if "controller" in table else None,
         fitted=_table(table, "fitted", {}),
         origin=_table(table, "origin", {}),
@@ -175,6 +178,21 @@ def _fixed(given: Any, constants: Mapping[str, Any], sensors: Mapping[str, Any])
         if path not in allowed:
             raise InputError(f"unknown constant '{path}' in fixed{did_you_mean(str(path), allowed)}")
     return [str(path) for path in given]
+
+
+def _conditions(given: Mapping[str, Any], constants: Mapping[str, Any]) -> dict[str, str]:
+    """Read which constant takes its value from each condition of a recording."""
+    allowed = [f"{section}.{key}" for section, values in constants.items() for key in values if key != "elements"]
+    found: dict[str, str] = {}
+    for name, path in given.items():
+        if path not in allowed:
+            raise InputError(f"conditions.{name}: unknown constant {path!r}{did_you_mean(str(path), allowed)}")
+        if path in found.values():
+            raise InputError(f"conditions.{name}: another condition sets '{path}', too; keep one of them")
+        if name in CONDITIONS:
+            raise InputError(f"conditions.{name}: every arm takes up '{name}' as it is; leave it out")
+        found[name] = path
+    return found
 
 
 def _table(table: Mapping[str, Any], key: str, default: dict[str, Any] | None = None) -> dict[str, Any]:
@@ -322,7 +340,13 @@ def arm_text(arm: Arm) -> str:
     if arm.effects:
         document["effects"] = effects
     controller = law_table(arm.controller, arm.input) if arm.controller else None
-    for key, extra in (("columns", arm.columns), ("controller", controller), ("fitted", arm.fitted), ("origin", arm.origin)):
+    for key, extra in (
+        ("columns", arm.columns),
+        ("conditions", dict(arm.conditions)),
+        ("controller", controller),
+        ("fitted", arm.fitted),
+        ("origin", arm.origin),
+    ):
         if extra:
             document[key] = extra
     return tomlkit.dumps(document)

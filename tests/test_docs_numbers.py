@@ -160,6 +160,13 @@ def robustness_table(numbers: str) -> str:
     return "\n".join(lines) + "\n"
 
 
+def rigs_tables(numbers: str) -> str:
+    """Write the gallery of real rigs from its answers."""
+    from flexarm_env.rigs.document import document
+
+    return document(json.loads(numbers)["rigs"], "../results/rigs/")
+
+
 @dataclass(frozen=True)
 class Table:
     """A table of a document: its name in the comments, the file of its numbers, and the function that writes it."""
@@ -186,6 +193,7 @@ TABLES = (
     Table("hidden-effects", README, HIDDEN / "table.json", hidden_effects_words),
     Table("hidden-effects", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.md", hidden_effects_table),
     Table("methods", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.json", methods_table),
+    Table("rigs", PROJECT / "docs" / "rigs.md", RESULTS / "rigs" / "rigs.json", rigs_tables),
     Table("times", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.json", times_words),
 )
 

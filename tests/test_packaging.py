@@ -31,7 +31,7 @@ LAYERS = (
     {"vector_env", "sb3", "wrappers", "pictures", "registration"},
     {"trials", "tuning"},
     {"terminal"},
-    {"lab", "demo", "thesis"},
+    {"lab", "demo", "thesis", "rigs"},
     {"cli", "__main__"},
     {"agents", "benchmarks"},
 )

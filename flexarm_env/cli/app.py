@@ -294,6 +294,22 @@ def thesis(
 
 
 @app.command()
+def rigs(
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Published recordings of real rigs.", show_default=False)],
+    output: Annotated[Path, typer.Option(metavar="FOLDER", help="Where answers, pictures and page go.")] = Path("results/rigs"),
+    only: Annotated[list[str] | None, typer.Option(metavar="RIG", help="One of the rigs; may be repeated.")] = None,
+    jobs: Annotated[int, typer.Option(min=1, max=256, help="Processes to use.")] = 2,
+    json: Json = None,
+) -> None:
+    """Diagnose the real rigs in a folder, beside the published figures; goes on where it stopped. Exit code 1 below a goal."""
+    arguments.check(json, pictures=True)
+    from flexarm_env.rigs.command import make_gallery
+
+    if not make_gallery(folder, output, only or [], jobs, json):
+        raise typer.Exit(1)
+
+
+@app.command()
 def lab(
     recordings: Annotated[
         list[Path] | None,

@@ -7,10 +7,12 @@ from typing import Annotated
 
 import typer
 
+from flexarm_env.arm_file import shipped_arms
+
 _RECORDINGS = typer.Argument(metavar="RECORDING…", help="Recordings (.csv, .mat, …), or folders of them.", show_default=False)
 Recordings = Annotated[list[Path], _RECORDINGS]
 RecordingsOrNone = Annotated[list[Path] | None, _RECORDINGS]
-_ARMS = "thesis, thesis-fem, cu-flexible, cu-rigid, emps"
+_ARMS = ", ".join(sorted(shipped_arms()))
 ArmName = Annotated[str, typer.Option("--arm", metavar="ARM", help=f"Arm file, or a shipped arm: {_ARMS}.")]
 Columns = Annotated[
     Path | None,

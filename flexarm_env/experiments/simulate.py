@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.experiments.derivatives import full_path, tangents_of
-from flexarm_env.experiments.payload import check_payload, stated_payload, with_payload
 from flexarm_env.experiments.plans import EXPERIMENTS, plan_of, random_stream
 from flexarm_env.experiments.plausible import check_motion
 from flexarm_env.experiments.rig import Rig
+from flexarm_env.experiments.stated import PAYLOAD, check_stated, stated_by, with_stated
 from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
@@ -71,7 +71,7 @@ def simulate(
         arm: with its sensors' noise, steps and dead times.
         input: "pulse" (open loop: 3 A from 0.5 to 1.0 s, then pulses of random size and time), "square" (PD to ±50° at
             0.2 Hz), "sweep" (slow PD motion and tones of random phase in the command), or a recording, or the path of
-            one: its commands are played, with its payload, and it needs no signals. Sizes are for a drive of 5 A and
+            one: its commands are played, with its conditions, and it needs no signals. Sizes are for a drive of 5 A and
             scale with the arm's limit.
         duration: [s]; a recording brings its own.
         rate: samples per second [Hz]; a recording brings its own.
@@ -117,7 +117,7 @@ def simulate(
 def _derivatives(arm: Arm, made: Recording, names: Sequence[str]) -> Derivatives:
     """Differentiate the readings of a recording that the arm made, at its commands."""
     paths = [full_path(arm, name) for name in names]
-    carried = with_payload(arm, stated_payload(made))
+    carried = with_stated(arm, stated_by(arm, made))
     even, interval = _sampling(made.time)
     rig = Rig(carried, 1.0 / interval, len(made), None)
     tangents = tangents_of(carried, rig.plant, paths)
@@ -141,19 +141,19 @@ def _perform(arm: Arm, experiment: str, count: int, rate: float, seed: int, nois
 
 
 def _replay(arm: Arm, source: Recording, seed: int, noise: bool, name: str) -> Recording:
-    """Apply the commands of a recording, with its payload at the tip.
+    """Apply the commands of a recording, with what it states of the machine.
 
     Raises:
-        InputError: for another input than the arm's, or a payload that the arm cannot carry.
+        InputError: for another input than the arm's, or a payload that the arm cannot carry, or a value out of bounds.
     """
     if source.input_kind != arm.input:
         raise InputError(f"{source.name}: holds {source.input_kind}, but arm '{arm.name}' is driven by {arm.input}")
     draws = _noise(arm, len(source), seed, source.name) if noise else None
     even, interval = _sampling(source.time)
-    check_payload(arm, source)
-    rig = Rig(with_payload(arm, stated_payload(source)), 1.0 / interval, len(source), draws)
+    check_stated(arm, source)
+    rig = Rig(with_stated(arm, stated_by(arm, source)), 1.0 / interval, len(source), draws)
     readings = rig.replay(source.command, () if even else (np.diff(source.time),))
-    conditions = {key: value for key, value in source.conditions.items() if key == "payload"}
+    conditions = {key: value for key, value in source.conditions.items() if key == PAYLOAD or key in arm.conditions}
     return _recording(arm, name, source.time, source.command, readings, source.reference, conditions)
 
 

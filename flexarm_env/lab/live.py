@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.experiments.payload import with_payload
+from flexarm_env.experiments.stated import with_stated
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.error_measure import Score, score
 from flexarm_env.identify.replay.readings import bounded
@@ -72,5 +72,5 @@ class Live:
         return replace(arm, sensors={signal: arm.sensors[signal] for signal in self._sensors})
 
     def _replay(self, arm: Arm, run: Run) -> Floats:
-        plant = with_payload(arm, run.payload).plant(self.data.interval)
+        plant = with_stated(arm, run.stated).plant(self.data.interval)
         return replay(plant, run, self.data)

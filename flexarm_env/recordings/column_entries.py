@@ -9,6 +9,7 @@ from typing import Any
 
 from flexarm_env import units
 from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.parameters import INPUTS
 from flexarm_env.recordings.columns import UNITS, Source
 from flexarm_env.recordings.corrections import SIGNAL_KEYS, TIME_KEYS, Corrections, read_corrections
 from flexarm_env.sensors import known_sensors
@@ -55,6 +56,8 @@ def read_sources(name: str, entry: Any) -> list[Source]:
             raise InputError(f"{where}: unknown key {key!r}{did_you_mean(str(key), allowed)}")
     if name == "time" and "rate" in entry:
         return [_even(entry)]
+    if name in INPUTS and "value" in entry:
+        return [_held(name, entry)]
     key = _key_of(name, entry)
     places = entry[key] if isinstance(entry.get(key), list) else [entry.get(key, name)]
     given = entry.get("unit", "" if key == "header" else None)
@@ -76,7 +79,8 @@ def _allowed_keys(name: str) -> tuple[str, ...]:
         return (*PLACES, *_CONVERSION, *TIME_KEYS, "row", "rate")
     if name not in UNITS:
         return (*PLACES, *_CONVERSION, "row")
-    return (*PLACES, *_CONVERSION, *(SIGNAL_KEYS if name in known_sensors() else ()), "row", "file", "time")
+    of_kind = SIGNAL_KEYS if name in known_sensors() else ("value",) if name in INPUTS else ()
+    return (*PLACES, *_CONVERSION, *of_kind, "row", "file", "time")
 
 
 def _usual(name: str) -> str:
@@ -139,6 +143,21 @@ def _file(name: str, entry: Mapping[str, Any]) -> str:
     if "file" in entry and (not pattern or pattern.count("*") > 1 or "/" in pattern or "\\" in pattern):
         raise InputError(f"[columns] {name}: file is {pattern!r}; write a name without folders, with one * for the run's name")
     return pattern
+
+
+def _held(name: str, entry: Mapping[str, Any]) -> Source:
+    """Check the value of a command that no column states, because it is the same in every row."""
+    others = [key for key in entry if key != "value"]
+    if others:
+        raise InputError(f"[columns] {name}: has 'value' and '{others[0]}'; the value alone makes the command")
+    value, unit = entry["value"], UNITS[name]
+    try:
+        number = units.quantity(value if isinstance(value, str) else typed(f"{name}: value", value, float), unit)
+    except InputError as error:
+        raise InputError(f"[columns] {name}: value: {error}") from None
+    if not math.isfinite(number):
+        raise InputError(f"[columns] {name}: value is {value!r}; write the command of every row, such as '0 {unit}'")
+    return Source(number, unit, key="value")
 
 
 def _even(entry: Mapping[str, Any]) -> Source:

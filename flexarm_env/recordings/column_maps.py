@@ -15,7 +15,7 @@ from flexarm_env.files import read_toml
 from flexarm_env.parameters import INPUTS
 from flexarm_env.recordings.checks import check_conditions
 from flexarm_env.recordings.column_entries import PLACES, listed, read_sources, typed
-from flexarm_env.recordings.columns import UNITS, ColumnMap, Source, check_names, part_names
+from flexarm_env.recordings.columns import MADE, UNITS, ColumnMap, Source, check_names, part_names
 from flexarm_env.recordings.messages import file_error
 
 _SETTINGS: dict[str, type] = {"delimiter": str, "header_prefix": str, "skip_rows": int, "decimal": str}
@@ -27,8 +27,9 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
     Each FlexArm name holds `column` (header text), `index` (0-based) or `variable` (a path such as "data.signals(2).values",
     with `row` or `index` of a matrix), with `unit`, and `sign` or `scale` if needed; `file` names another file that has it.
     Entries that all lack a place refine FlexArm's own header. A signal also has `ignore`, `range`, `repeats`, `wrap` and
-    `shift`, time `shift`. Beside them stand `delimiter`, `header_prefix`, `skip_rows`, `decimal`, and a table `conditions` of
-    columns that hold one number each, such as a gain. A file may have a `[controller]` table, too.
+    `shift`, time `shift`; a command that is the same in every row has a `value` alone. Beside them stand `delimiter`,
+    `header_prefix`, `skip_rows`, `decimal`, and a table `conditions` of columns that hold one number each, such as a gain. A
+    file may have a `[controller]` table, too.
 
     Args:
         columns: the file, or the table.
@@ -93,7 +94,7 @@ def _check_kinds(columns: ColumnMap) -> None:
     for name, source in (columns.sources | columns.conditions).items():
         if source.key == "header" and not columns.refines:
             raise InputError(f"[columns] {name}: give exactly one of {listed(PLACES)}, as the other entries do")
-        if source.key != "rate" and not (name.startswith("time") and columns.joins):
+        if source.key not in MADE and not (name.startswith("time") and columns.joins):
             by_file.setdefault(source.file, set()).add("variable" if source.key == "variable" else "column")
     if not columns.joins and any(len(kinds) > 1 for kinds in by_file.values()):
         raise InputError("[columns]: some entries have 'variable' and some 'column' or 'index'; keep to one kind")

@@ -17,6 +17,9 @@ from flexarm_env.sensors import known_sensors
 UNITS = {"time": "s", **INPUTS, **{name: sensor.unit for name, sensor in known_sensors().items()}, "reference": "rad"}
 CALIBRATED = tuple(name for name in (*known_sensors(), "reference") if UNITS[name] != "V")
 
+#: Keys of entries that no column of a file states.
+MADE = ("rate", "value")
+
 _NATIVE = re.compile(r"([^\[]*+)\[([^\]]*+)\]")
 
 
@@ -25,12 +28,13 @@ class Source:
     """The place of one quantity in a file, and its conversion to SI: value × sign × scale, in `unit`.
 
     Attributes:
-        place: header text, 0-based column number, path of a variable such as "data.signals(2).values", or a rate [Hz].
+        place: header text, 0-based column number, path of a variable such as "data.signals(2).values", a rate [Hz], or the
+            command of every row.
         unit: unit of the numbers in the file; "" for that of the file's own header.
         sign: 1 or -1.
         scale: a plain factor, or a quantity such as "1 rad/m".
-        key: of the entry that names the place: "column", "index", "variable", "rate" (of time alone, evenly spaced), or
-            "header" for the column of that name in FlexArm's own header.
+        key: of the entry that names the place: "column", "index", "variable", "rate" (of time alone, evenly spaced), "value"
+            (of a command alone, the same throughout), or "header" for the column of that name in FlexArm's own header.
         row: of a variable that is a matrix, from 0; None for all.
         cut: its column, from 0; None for all.
         file: name of the file that has it, in which "*" stands for the name of the run; "" for the file that is read.
@@ -75,7 +79,7 @@ class ColumnMap:
     @property
     def refines(self) -> bool:
         """Whether it names no place of any column, and so refines FlexArm's own header of a file."""
-        return all(source.key in ("header", "rate") for source in self.sources.values())
+        return all(source.key in ("header", *MADE) for source in self.sources.values())
 
     @property
     def joins(self) -> bool:

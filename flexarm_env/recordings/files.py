@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from flexarm_env.errors import InputError
-from flexarm_env.recordings.formats.catalogue import folder_suffixes
+from flexarm_env.recordings.formats.catalogue import folder_suffixes, suffixes
 from flexarm_env.recordings.messages import file_error
 from flexarm_env.recordings.table import LARGEST_FILE
 
@@ -60,11 +60,12 @@ def files_of(paths: Iterable[PathLike]) -> list[Path]:
 
 
 def _inside(folder: Path) -> list[Path]:
-    """List the recordings of a folder by name."""
+    """List the recordings of a folder by name: where it has none with a suffix of its own, those of text and JSON."""
     try:
-        files = sorted(path for path in folder.iterdir() if _is_recording(path))
+        inside = sorted(path for path in folder.iterdir() if not path.name.startswith(".") and not path.is_dir())
     except OSError as error:
         raise file_error(folder, f"cannot be read: {error.strerror}; check its permissions") from None
+    files = _with_suffix(inside, folder_suffixes()) or _with_suffix(inside, suffixes())
     if not files:
         others = ", ".join(suffix for suffix in folder_suffixes() if suffix != ".csv")
         raise file_error(folder, f"a folder without CSV files or other recordings ({others}); name the files, or another folder")
@@ -77,6 +78,6 @@ def _inside(folder: Path) -> list[Path]:
     return files
 
 
-def _is_recording(path: Path) -> bool:
-    """Whether a path is a file of a format that folders stand for, and not hidden."""
-    return path.suffix.lower() in folder_suffixes() and not path.name.startswith(".") and not path.is_dir()
+def _with_suffix(paths: Iterable[Path], allowed: Sequence[str]) -> list[Path]:
+    """Select the paths with a suffix among those allowed."""
+    return [path for path in paths if path.suffix.lower() in allowed]

@@ -27,6 +27,7 @@ from flexarm_env.recordings.files import PathLike, read_bytes
 from flexarm_env.recordings.formats.catalogue import format_of
 from flexarm_env.recordings.joined import read_joined, recording_files, run_name
 from flexarm_env.recordings.messages import file_error
+from flexarm_env.recordings.sidecar import read_conditions, sidecar_of
 from flexarm_env.sensors import known_sensors
 
 Floats = NDArray[np.float64]
@@ -48,8 +49,9 @@ class Recording(Shown):
             tip_deflection [m]; none in commands that are only to be played. NaN where a signal was not measured: between
             the readings of a slower sensor, and in its gaps.
         reference: (n,) [rad], the commanded arm angle, or None.
-        conditions: known conditions in SI. A replay takes up `payload` [kg] alone. The others inform a person, also
-            `start` [s], how long the run had gone on before the first sample: times of effects count from that sample.
+        conditions: known conditions in SI. A replay takes up `payload` [kg], and those to which the arm gives a constant. The
+            others inform a person, also `start` [s], how long the run had gone on before the first sample: times of effects
+            count from that sample.
         controller: the law under which it was made, if its column map states one.
         source: the path it was read from; "" if from none.
         sha256: of that file's content; "" if from none.
@@ -206,7 +208,7 @@ class Recording(Shown):
         except InputError as error:
             raise file_error(path, error) from None
         controller = None if layout is None else layout.controller
-        return replace(recording, controller=controller, source=str(path), sha256=checksum)
+        return replace(_with_sidecar(recording, path), controller=controller, source=str(path), sha256=checksum)
 
     @classmethod
     def read_all(
@@ -341,6 +343,19 @@ def _recording(
         conditions=conditions,
         notes=notes,
     )
+
+
+def _with_sidecar(recording: Recording, path: Path) -> Recording:
+    """Add the conditions in the file beside a recording, with a note that names it."""
+    beside = sidecar_of(path)
+    if beside is None:
+        return recording
+    stated = read_conditions(beside)
+    twice = [name for name in stated if name in recording.conditions]
+    if twice:
+        raise file_error(path, f"condition '{twice[0]}' comes twice, in the file and in {beside.name}; keep one of the two")
+    note = f"{beside.name} states {', '.join(f'{name} = {value:g}' for name, value in stated.items())}"
+    return replace(recording, conditions=recording.conditions | stated, notes=(*recording.notes, note))
 
 
 def _share_measured(values: Floats) -> str:

@@ -87,7 +87,7 @@ def test_an_offset_of_a_gage_is_no_motion_of_an_arm_that_is_driven_at_once(offse
     nominal, data = prepare(arm, [cut(simulate(arm, push, seed=1), 0.0, signals)])
     (run,) = data.runs
     assert not run.start.moving
-    plant = data.plants(nominal)[run.payload]
+    plant = data.plants(nominal)[run.stated]
     stretch = data.stretch(run)
     stretch.place(plant, stretch.fit(plant))
     assert not np.any(plant.physical())

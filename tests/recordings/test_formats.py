@@ -98,7 +98,7 @@ def test_the_lab_and_the_messages_follow(npz, tmp_path):
     arm = Arm.load(npz.parent / "A.toml")
     found = read_upload(arm, "two.npz", (npz / "two.npz").read_bytes(), None, [])
     assert (found.source, len(found)) == ("two.npz", 60)
-    assert catalogue.suffixes() == [".csv", ".dat", ".db3", ".lvm", ".mat", ".mcap", ".npz", ".parquet", ".txt"]
+    assert catalogue.suffixes() == [".csv", ".dat", ".db3", ".json", ".lvm", ".mat", ".mcap", ".npz", ".parquet", ".txt"]
     (tmp_path / "none").mkdir()
     with pytest.raises(InputError, match=r"a folder without CSV files or other recordings \(.*\.mat, .*\.npz, \.parquet\)"):
         Recording.read_all(tmp_path / "none")
@@ -106,6 +106,7 @@ def test_the_lab_and_the_messages_follow(npz, tmp_path):
 
 def test_formats_are_those_of_the_folder():
     assert [one.name for one in catalogue.formats()] == [
+        "JSON log",
         "LabVIEW measurement file",
         "MATLAB file",
         "MCAP file",

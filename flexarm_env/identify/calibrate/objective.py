@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
+from flexarm_env.experiments.stated import Stated
 from flexarm_env.identify.calibrate.parameters import FitParameters
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.error_measure import error_measure
@@ -41,14 +42,14 @@ class ObserverBank:
     """Observer gains, designed once for each structure of an arm and kept while its numbers are fitted.
 
     Attributes:
-        designed: physical gains by payload, effects and size of the state.
+        designed: physical gains by what recordings state, effects and size of the state.
     """
 
-    designed: dict[tuple[float, tuple[str, ...], int, int], Floats] = field(default_factory=dict)
+    designed: dict[tuple[Stated, tuple[str, ...], int, int], Floats] = field(default_factory=dict)
 
     def gains(self, arm: Arm, plant: Plant, run: Run, dataset: Dataset, torque_noise: float) -> Floats:
         """Look up the gains for an arm's structure; design them for this arm where there are none yet."""
-        key = (run.payload, tuple(arm.effects), plant.modes, plant.states)
+        key = (run.stated, tuple(arm.effects), plant.modes, plant.states)
         if key not in self.designed:
             self.designed[key] = observer_gains(arm, plant, dataset, torque_noise)
         return self.designed[key]
@@ -128,7 +129,7 @@ class Objective:
         judges_free_run = error_measure(arm).judges_free_run
         errors = []
         for place, run in enumerate(runs):
-            plant = plants[run.payload]
+            plant = plants[run.stated]
             gains = self.observers.gains(arm, plant, run, dataset, self.torque_noise) if self.torque_noise > 0.0 else None
             start = self.starts.start(plant, run, place, dataset)
             errors.append(run.errors(replay(plant, run, dataset, gains, start)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -112,7 +112,7 @@ class FitParameters:
 
 def free_parameters(arm: Arm, nominal: Arm, dataset: Dataset) -> FitParameters:
     """List everything that a calibration of the arm moves: constants first, then effects that the nominal arm lacks."""
-    found = FitParameters(tuple(_constants(arm, nominal)))
+    found = FitParameters(tuple(_constants(arm, nominal, stated_throughout(dataset))))
     for name in arm.effects:
         if name in nominal.effects:
             found += known_effect_parameters(arm, name, nominal, dataset)
@@ -122,16 +122,21 @@ def free_parameters(arm: Arm, nominal: Arm, dataset: Dataset) -> FitParameters:
     return found
 
 
-def _constants(arm: Arm, nominal: Arm) -> Iterator[FitParameter]:
-    """List constants and sensor gains with a spread, around their values in the nominal arm."""
+def _constants(arm: Arm, nominal: Arm, stated: Collection[str]) -> Iterator[FitParameter]:
+    """List constants and sensor gains with a spread, around their values in the nominal arm, unless every run states them."""
     one_body = not arm.structure().separate_motor
     paths = [f"{section}.{key}" for section, table in arm.constants.items() for key in table]
     for path in paths:
-        if not (one_body and path in SHARES):
+        if path not in stated and not (one_body and path in SHARES):
             yield from _with_prior(path, nominal.value(path), arm.parameter(path).spread, arm)
     for signal in arm.sensors:
         path = f"sensors.{signal}.gain"
         yield from _with_prior(path, nominal.value(path), arm.parameter(path).spread, arm)
+
+
+def stated_throughout(dataset: Dataset) -> set[str]:
+    """Collect the paths of values that every recording states, so that none depends on the arm's own."""
+    return set.intersection(*({path for path, _ in run.stated} for run in dataset.runs))
 
 
 def _with_prior(path: str, value: float, spread: float, arm: Arm) -> Sequence[FitParameter]:

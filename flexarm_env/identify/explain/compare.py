@@ -55,13 +55,13 @@ def compare(
     reduced, dataset = prepare(arm, recordings, settings, rate)
     notes, _ = preflight(dataset)
     plants = dataset.plants(reduced)
-    observers = {payload: window_observers(reduced, plant, dataset) for payload, plant in plants.items()}
+    observers = {stated: window_observers(reduced, plant, dataset) for stated, plant in plants.items()}
     replays = []
     for i, run in enumerate(dataset.runs):
         if progress:
             progress(i / len(dataset.runs), f"replaying {run.name}")
-        plant = plants[run.payload]
-        windows = window_replay(plant, run, dataset, observers[run.payload])
+        plant = plants[run.stated]
+        windows = window_replay(plant, run, dataset, observers[run.stated])
         free = replay(plant, run, dataset)
         one = _replay(run, dataset.signals, free, windows, regimes(run, dataset))
         replays.append(replace(one, closed=_closed(plant, run, dataset, arm.input)))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.experiments.payload import with_payload
+from flexarm_env.experiments.stated import with_stated
 from flexarm_env.identify.replay.dataset import Dataset, prepare
 from flexarm_env.identify.replay.observer import riccati
 from flexarm_env.identify.replay.readings import errors_of
@@ -72,11 +72,11 @@ def hub_torque_of(arm: Arm, dataset: Dataset) -> list[HubMotion]:
     free, numbers = without_hub_effects(arm), dataset.settings.explaining
     plants, step = dataset.plants(free), numbers.torque_step * torque_scale(free, dataset.runs)
     smoothers = {}
-    for payload in plants:
-        linear = with_payload(free, payload).linearise("moving", dataset.interval)
-        smoothers[payload] = _smoother(linear, dataset.noise, step, dataset.settings)
+    for stated in plants:
+        linear = with_stated(free, stated).linearise("moving", dataset.interval)
+        smoothers[stated] = _smoother(linear, dataset.noise, step, dataset.settings)
     return [
-        smoothers[run.payload].smooth(run, plants[run.payload].delayed(run.command), dataset)
+        smoothers[run.stated].smooth(run, plants[run.stated].delayed(run.command), dataset)
         for run in dataset.runs
         if not len(run.intervals)
     ]

@@ -94,7 +94,7 @@ def _baseline(arm: Arm, dataset: Dataset) -> Baseline:
     parameters = free_parameters(arm, arm, dataset)
     own = arm.constants["drive"]["torque_noise"]
     plants = dataset.plants(arm)
-    sigma = np.array([innovation_sigma(plants[run.payload], dataset, own) for run in dataset.runs])
+    sigma = np.array([innovation_sigma(plants[run.stated], dataset, own) for run in dataset.runs])
     level = max(settings.process_noise.detection * torque_scale(arm, dataset.runs), own)
     objective = Objective(arm, dataset, parameters, level, Weights(sigma, parameters.priors))
     steps = parameters.step_sizes(parameters.position(arm), settings.parameters)

@@ -85,7 +85,7 @@ class Replayer:
 
     Attributes:
         arm: with the sensors of the recording, and their noise.
-        plant: the arm with the recording's payload.
+        plant: the arm with what the recording states.
         dataset: the recording alone, with its initial state, and the noise of the signals that give that.
         noise: (signals,) standard deviation of the readings.
     """

@@ -29,7 +29,7 @@ class Overview:
         recordings: of the machine.
         inspection: facts on their signals, and the faults found.
         excitation: limits before any fit.
-        notes: a line each on noise, sampling and payload.
+        notes: a line each on noise, sampling and conditions.
     """
 
     arm: Arm

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
-from flexarm_env.experiments.payload import check_payload, plants_by_payload, stated_payload
+from flexarm_env.experiments.stated import Stated, check_stated, plants_by_stated, stated_by
 from flexarm_env.identify.replay.initial_state import find_start
 from flexarm_env.identify.replay.loop import Loop, find_loop
 from flexarm_env.identify.replay.plausible import check_free_motion, check_steps
@@ -79,9 +79,9 @@ class Dataset:
         """Whether any run is replayed in closed loop."""
         return any(run.loop is not None for run in self.runs)
 
-    def plants(self, arm: Arm) -> dict[float, Plant]:
-        """Build an arm's plants by the payload [kg] of the runs, which carry it."""
-        return plants_by_payload(arm, (run.payload for run in self.runs), self.interval)
+    def plants(self, arm: Arm) -> dict[Stated, Plant]:
+        """Build an arm's plants by what the runs state of it."""
+        return plants_by_stated(arm, (run.stated for run in self.runs), self.interval)
 
     def stretch(self, run: Run, loop: Loop | None = None) -> Stretch:
         """Cut out the first samples of a run, to which its initial state is fitted.
@@ -159,7 +159,7 @@ def _replayed(arm: Arm, dataset: Dataset) -> list[Floats]:
     """Replay each run freely: readings (samples, signals)."""
     plants, found = dataset.plants(arm), []
     for run in dataset.runs:
-        plant, stretch = plants[run.payload], dataset.stretch(run)
+        plant, stretch = plants[run.stated], dataset.stretch(run)
         stretch.place(plant, stretch.fit(plant))
         found.append(plant.replay(run.command, run.intervals))
     return found
@@ -168,7 +168,7 @@ def _replayed(arm: Arm, dataset: Dataset) -> list[Floats]:
 def _check(arm: Arm, recording: Recording, fewest: int) -> None:
     if recording.input_kind != arm.input:
         raise InputError(f"{recording.name} holds {recording.input_kind}, but arm '{arm.name}' is driven by {arm.input}")
-    check_payload(arm, recording)
+    check_stated(arm, recording)
     count = int(np.count_nonzero(share_of(_readings(arm, recording))))
     if count < fewest:
         with_readings = f" with a reading of {' or '.join(arm.signals)}" if count < len(recording) else ""
@@ -192,7 +192,7 @@ def _run(arm: Arm, recording: Recording, noise: Floats, interval: float, setting
         intervals=np.append(steps, interval) if uneven else NO_INTERVALS,
         train=shown < (1.0 - numbers.held_out_share) * shown[-1],
         start=start,
-        payload=stated_payload(recording),
+        stated=stated_by(arm, recording),
         loop=loop,
         loop_note=note,
     )

@@ -124,8 +124,8 @@ def first_disturbances(arm: Arm, dataset: Dataset) -> Disturbances:
 def _observer(arm: Arm, dataset: Dataset, disturbances: Disturbances) -> Observer:
     """Design the filter for an arm."""
     observer = Observer(dataset, disturbances)
-    for payload, plant in dataset.plants(arm).items():
-        observer.gains(arm, plant, payload)
+    for stated, plant in dataset.plants(arm).items():
+        observer.gains(arm, plant, stated)
     return observer
 
 

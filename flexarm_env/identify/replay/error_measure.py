@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
+from flexarm_env.experiments.stated import Stated
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.observer import innovation_sigma, innovation_sigmas, observer_gains
 from flexarm_env.identify.replay.readings import bounded
@@ -106,13 +107,13 @@ class WindowErrors:
     def score(self, arm: Arm, dataset: Dataset, held_out: bool) -> Score:
         """Measure the errors of an arm on the held-out or the fitted part."""
         plants = dataset.plants(arm)
-        observers = {payload: window_observers(arm, plant, dataset) for payload, plant in plants.items()}
+        observers = {stated: window_observers(arm, plant, dataset) for stated, plant in plants.items()}
         totals, parts = np.zeros(2), []
         for run in dataset.runs_to_replay(held_out):
             rows = ~run.train if held_out else run.train
-            plant, first = plants[run.payload], int(np.argmax(rows))
+            plant, first = plants[run.stated], int(np.argmax(rows))
             start = dataset.stretch(run).fit(plant)
-            windows = window_replay(plant, run, dataset, observers[run.payload], first, start)
+            windows = window_replay(plant, run, dataset, observers[run.stated], first, start)
             free = replay(plant, run, dataset, start=start)
             both = [run.errors(y, dataset.noise)[rows] for y in (windows, free)]
             totals += [_squares(errors) for errors in both]
@@ -136,9 +137,9 @@ class WindowErrors:
         """Replay the held-out part of each run in windows; rows before it are left empty."""
         plants = dataset.plants(arm)
         levels = dataset.settings.process_noise.windows_brief
-        observers = {payload: window_observers(arm, plant, dataset, levels)[1:] for payload, plant in plants.items()}
+        observers = {stated: window_observers(arm, plant, dataset, levels)[1:] for stated, plant in plants.items()}
         for run in dataset.runs:
-            yield window_replay(plants[run.payload], run, dataset, observers[run.payload], int(np.argmax(~run.train)))
+            yield window_replay(plants[run.stated], run, dataset, observers[run.stated], int(np.argmax(~run.train)))
 
 
 @dataclass(frozen=True)
@@ -153,7 +154,7 @@ class InnovationErrors:
         for run, (corrected, sigma) in zip(dataset.runs, self._innovations(arm, dataset), strict=True):
             rows = ~run.train if held_out else run.train
             parts.append((corrected[rows], sigma[rows]))
-            free += _squares(run.errors(replay(plants[run.payload], run, dataset), dataset.noise)[rows])
+            free += _squares(run.errors(replay(plants[run.stated], run, dataset), dataset.noise)[rows])
         count = dataset.readings(held_out)
         total = sum(_squares(errors) for errors, _ in parts)
         return Score(float(np.sqrt(total / count)), float(np.sqrt(free / count)), _by_signal(parts, dataset, held_out))
@@ -167,11 +168,11 @@ class InnovationErrors:
     def _innovations(self, arm: Arm, dataset: Dataset) -> Iterator[tuple[Floats, Floats]]:
         """Compute the innovations (samples, signals) of each run over their deviation, and that deviation."""
         plants, own = dataset.plants(arm), arm.constants["drive"]["torque_noise"]
-        gains = {payload: observer_gains(arm, plant, dataset, own) for payload, plant in plants.items()}
-        stationary = {payload: innovation_sigma(plant, dataset, own) for payload, plant in plants.items()}
+        gains = {stated: observer_gains(arm, plant, dataset, own) for stated, plant in plants.items()}
+        stationary = {stated: innovation_sigma(plant, dataset, own) for stated, plant in plants.items()}
         for run in dataset.runs:
-            plant, gain = plants[run.payload], gains[run.payload]
-            sigma = np.broadcast_to(stationary[run.payload], run.measured.shape)
+            plant, gain = plants[run.stated], gains[run.stated]
+            sigma = np.broadcast_to(stationary[run.stated], run.measured.shape)
             if run.readings() < run.measured.size:
                 sigma = innovation_sigmas(plant, run, dataset, own, gain)
             yield run.errors(replay(plant, run, dataset, gain), sigma), sigma
@@ -179,10 +180,10 @@ class InnovationErrors:
     def brief_readings(self, arm: Arm, dataset: Dataset) -> list[Floats]:
         """Compute the predictions (rows, signals) of each run's held-out part, over the deviation of the innovations."""
         plants, own = dataset.plants(arm), arm.constants["drive"]["torque_noise"]
-        gains = {payload: observer_gains(arm, plant, dataset, own) for payload, plant in plants.items()}
-        sigmas = {payload: innovation_sigma(plant, dataset, own) for payload, plant in plants.items()}
-        predicted = [(run, replay(plants[run.payload], run, dataset, gains[run.payload])) for run in dataset.runs]
-        return [one[~run.train] / sigmas[run.payload] for run, one in predicted]
+        gains = {stated: observer_gains(arm, plant, dataset, own) for stated, plant in plants.items()}
+        sigmas = {stated: innovation_sigma(plant, dataset, own) for stated, plant in plants.items()}
+        predicted = [(run, replay(plants[run.stated], run, dataset, gains[run.stated])) for run in dataset.runs]
+        return [one[~run.train] / sigmas[run.stated] for run, one in predicted]
 
 
 def error_measure(arm: Arm) -> ErrorMeasure:
@@ -200,12 +201,12 @@ def closed_loop_errors(arms: Mapping[str, Arm], dataset: Dataset) -> dict[str, f
     return {name: _closed_loop_error(arm, dataset) for name, arm in arms.items()} if dataset.has_loop else {}
 
 
-def window_errors(arm: Arm, plants: Mapping[float, Plant], dataset: Dataset) -> list[Floats]:
+def window_errors(arm: Arm, plants: Mapping[Stated, Plant], dataset: Dataset) -> list[Floats]:
     """Compute the errors over noise (samples, signals) of each whole run in windows; 0 where nothing was measured."""
-    observers = {payload: window_observers(arm, plant, dataset) for payload, plant in plants.items()}
+    observers = {stated: window_observers(arm, plant, dataset) for stated, plant in plants.items()}
     errors = []
     for run in dataset.runs:
-        replayed = window_replay(plants[run.payload], run, dataset, observers[run.payload])
+        replayed = window_replay(plants[run.stated], run, dataset, observers[run.stated])
         errors.append(bounded(run.errors(replayed, dataset.noise)))
     return errors
 
@@ -213,7 +214,7 @@ def window_errors(arm: Arm, plants: Mapping[float, Plant], dataset: Dataset) -> 
 def _closed_loop_error(arm: Arm, dataset: Dataset) -> float:
     """Measure the held-out error of whole recordings in closed loop; recordings without a loop count in a free run."""
     plants = dataset.plants(arm)
-    errors = [run.errors(whole_replay(plants[run.payload], run, dataset), dataset.noise)[~run.train] for run in dataset.runs]
+    errors = [run.errors(whole_replay(plants[run.stated], run, dataset), dataset.noise)[~run.train] for run in dataset.runs]
     return float(np.sqrt(sum(map(_squares, errors)) / dataset.readings(held_out=True)))
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
+from flexarm_env.experiments.stated import Stated
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.observer import forecast_gains, modal_gains
 from flexarm_env.identify.replay.run import Run
@@ -49,19 +50,19 @@ class Observer:
     Attributes:
         dataset: the recordings.
         disturbances: for which it is designed.
-        designed: physical gains (modes, states, signals), which arms of other values share, by payload [kg], effects and
+        designed: physical gains (modes, states, signals), which arms of other values share, by what runs state, effects and
             size of the state.
         starts: initial states of the recordings.
     """
 
     dataset: Dataset
     disturbances: Disturbances
-    designed: dict[tuple[float, tuple[str, ...], int, int], Floats] = field(default_factory=dict, repr=False, compare=False)
+    designed: dict[tuple[Stated, tuple[str, ...], int, int], Floats] = field(default_factory=dict, repr=False, compare=False)
     starts: StartBank = field(default_factory=StartBank, repr=False, compare=False)
 
-    def gains(self, arm: Arm, plant: Plant, payload: float) -> Floats:
+    def gains(self, arm: Arm, plant: Plant, stated: Stated) -> Floats:
         """Look up the kernel's gains for an arm's plant; design those of its structure for it where there are none yet."""
-        key = (payload, tuple(arm.effects), plant.modes, plant.states)
+        key = (stated, tuple(arm.effects), plant.modes, plant.states)
         if key not in self.designed:
             noise = self.dataset.noise * np.sqrt(self.disturbances.white)
             self.designed[key] = forecast_gains(plant, self.dataset, self.disturbances.torque, noise)
@@ -91,7 +92,7 @@ def forecast_errors(arm: Arm, dataset: Dataset, runs: Sequence[Run], observer: O
         Errors over the noise (rows, signals), run after run; 0 where nothing was measured.
     """
     plants = dataset.plants(arm)
-    parts = [_forecast(arm, plants[run.payload], run, observer) for run in runs]
+    parts = [_forecast(arm, plants[run.stated], run, observer) for run in runs]
     return _finite(np.concatenate(parts))
 
 
@@ -102,7 +103,7 @@ def _finite(errors: Floats) -> Floats:
 def _forecast(arm: Arm, plant: Plant, run: Run, observer: Observer) -> Floats:
     """Compute the errors over the noise (samples, signals) of one run."""
     length, readings = window_samples(observer.dataset), np.empty_like(run.measured)
-    gains = observer.gains(arm, plant, run.payload)
+    gains = observer.gains(arm, plant, run.stated)
     observer.place(plant, run)
     command = plant.delayed(run.command)
     for start in range(0, len(command), length):
@@ -137,14 +138,14 @@ class FilteredStates:
     Attributes:
         dataset: the recordings.
         observer: the filter.
-        plants: of the arm, by payload.
+        plants: of the arm, by what runs state.
         starts: first sample of each window, by run.
         states: the kernel's state at each, by run.
     """
 
     dataset: Dataset
     observer: Observer
-    plants: Mapping[float, Plant]
+    plants: Mapping[Stated, Plant]
     starts: tuple[Integers, ...]
     states: tuple[Floats, ...]
 
@@ -153,8 +154,8 @@ class FilteredStates:
         plants, length = self.dataset.plants(arm), window_samples(self.dataset)
         parts = []
         for run, starts, states in zip(self.dataset.fitted, self.starts, self.states, strict=True):
-            plant = plants[run.payload]
-            if not same_modes(plant, self.plants[run.payload]):
+            plant = plants[run.stated]
+            if not same_modes(plant, self.plants[run.stated]):
                 errors = _forecast(arm, plant, run, self.observer)
                 parts += [errors[start : start + length] for start in starts]
                 continue
@@ -181,8 +182,8 @@ def filtered_states(arm: Arm, dataset: Dataset, observer: Observer, most: int) -
     stride = max(-(-count // most), 1)
     all_starts, all_states = [], []
     for run in dataset.fitted:
-        plant, kept = plants[run.payload], []
-        gains = observer.gains(arm, plant, run.payload)
+        plant, kept = plants[run.stated], []
+        gains = observer.gains(arm, plant, run.stated)
         observer.place(plant, run)
         command = plant.delayed(run.command)
         for start in range(0, len(command), length):

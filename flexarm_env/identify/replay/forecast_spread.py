@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from flexarm_env.experiments.stated import Stated
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.forecast import Disturbances, window_samples
 from flexarm_env.identify.replay.observer import process_of_moving, steady_covariance
@@ -25,7 +26,7 @@ class Leads:
 
     Attributes:
         group: (rows,) of each row of the errors.
-        samples: (lead times,) in samples. The groups are those of the first payload, then of the next.
+        samples: (lead times,) in samples. The groups are those of the first runs that state the same, then of the next.
         counts: (groups, signals) readings.
         present: (rows, signals) whether there is a reading.
     """
@@ -50,13 +51,13 @@ def lead_times(dataset: Dataset, runs: Sequence[Run]) -> Leads:
     """Group the samples of runs by their lead time, in groups that widen with it."""
     length = window_samples(dataset)
     ends = np.unique(np.round(np.geomspace(1, length, dataset.settings.forecasts.groups)).astype(np.int64))
-    payloads = list(dict.fromkeys(run.payload for run in dataset.runs))
+    stated = list(dict.fromkeys(run.stated for run in dataset.runs))
     lead = [np.arange(len(run.command)) % length for run in runs]
-    place = [payloads.index(run.payload) * len(ends) for run in runs]
+    place = [stated.index(run.stated) * len(ends) for run in runs]
     group = np.concatenate([first + np.searchsorted(ends, one + 1) for first, one in zip(place, lead, strict=True)])
     starts = np.concatenate([[1], ends[:-1] + 1])
     present = np.concatenate([~np.isnan(run.measured) for run in runs])
-    most = len(payloads) * len(ends)
+    most = len(stated) * len(ends)
     return Leads(group, (starts + ends) // 2, _counts(group, present, most), present)
 
 
@@ -70,7 +71,7 @@ class Spread:
     """Variance of the forecasts of a linear, moving arm under disturbances.
 
     Attributes:
-        plants: a compiled arm for each payload.
+        plants: a compiled arm for each that the runs state.
         dataset: the recordings.
         samples: (lead times,) in samples.
     """
@@ -94,9 +95,9 @@ class Spread:
         return np.concatenate(variances)
 
 
-def spread_of(plants: Mapping[float, Plant], dataset: Dataset, leads: Leads) -> Spread:
-    """Build the spread of an arm's forecasts from its plants by payload."""
-    return Spread(tuple(plants[p] for p in dict.fromkeys(run.payload for run in dataset.runs)), dataset, leads.samples)
+def spread_of(plants: Mapping[Stated, Plant], dataset: Dataset, leads: Leads) -> Spread:
+    """Build the spread of an arm's forecasts from its plants by what runs state."""
+    return Spread(tuple(plants[p] for p in dict.fromkeys(run.stated for run in dataset.runs)), dataset, leads.samples)
 
 
 def _growth(plant: Plant, dataset: Dataset, samples: Integers) -> tuple[Floats, Floats, Floats]:

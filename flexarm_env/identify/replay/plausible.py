@@ -6,8 +6,8 @@ import numpy as np
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
-from flexarm_env.experiments.payload import stated_payload, with_payload
 from flexarm_env.experiments.plausible import check_motion
+from flexarm_env.experiments.stated import stated_by, with_stated
 from flexarm_env.identify.settings import Preparation
 from flexarm_env.plant.plant import NO_INTERVALS
 from flexarm_env.recordings.recording import Recording
@@ -35,7 +35,7 @@ def check_free_motion(arm: Arm, recording: Recording, numbers: Preparation) -> N
     """
     steps, interval = np.diff(recording.time), recording.sample_time
     even = np.abs(steps - interval).max() <= numbers.uneven * interval
-    plant = with_payload(arm, stated_payload(recording)).plant(interval)
+    plant = with_stated(arm, stated_by(arm, recording)).plant(interval)
     plant.place()
     intervals = NO_INTERVALS if even else np.append(steps, interval)
     readings = plant.replay(np.ascontiguousarray(recording.command), intervals)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexarm_env.experiments.stated import PAYLOAD
 from flexarm_env.identify.replay.dataset import Dataset
 
 
@@ -16,8 +17,7 @@ def preflight(dataset: Dataset) -> tuple[list[str], bool]:
     numbers = dataset.settings.preparation
     notes = list(dataset.notes)
     for run in dataset.runs:
-        if run.payload:
-            notes.append(f"{run.name}: the arm carries the {run.payload:g} kg that the recording states as its payload")
+        notes += [f"{run.name}: {_stated_note(path, value)}" for path, value in run.stated]
         if run.loop_note:
             notes.append(f"{run.name}: {run.loop_note}")
         if len(run.intervals):
@@ -39,3 +39,10 @@ def preflight(dataset: Dataset) -> tuple[list[str], bool]:
             "nothing moves beyond the noise: record a run that breaks away both ways, as `flexarm simulate --input square`"
         )
     return notes, length < numbers.shortest or motion < numbers.least_motion
+
+
+def _stated_note(path: str, value: float) -> str:
+    """Describe one condition that a recording states of the machine."""
+    if path == PAYLOAD:
+        return f"the arm carries the {value:g} kg that the recording states as its payload"
+    return f"{path} is {value:g}, as the recording states"

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from flexarm_env.experiments.stated import Stated
 from flexarm_env.identify.replay.initial_state import Start
 from flexarm_env.identify.replay.loop import Loop
 from flexarm_env.identify.replay.readings import count_of, errors_of, extent, measured_time
@@ -26,7 +27,7 @@ class Run:
         intervals: (samples,) times to the next sample [s] where sampling is uneven, else empty.
         train: (samples,) true where calibrations see the sample.
         start: evidence of its first samples on its initial state.
-        payload: known mass at the tip [kg], beside the arm's own.
+        stated: what the recording states of the machine, a payload [kg] or values of constants.
         loop: the control loop in which it was recorded, where that is known.
         loop_note: on the control law, or on the reason why there is no loop; "" where none is stated.
     """
@@ -38,7 +39,7 @@ class Run:
     intervals: Floats
     train: NDArray[np.bool_]
     start: Start
-    payload: float = 0.0
+    stated: Stated = ()
     loop: Loop | None = None
     loop_note: str = ""
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from flexarm_env.errors import InputError
 from flexarm_env.recordings.checks import as_vector
-from flexarm_env.recordings.columns import ColumnMap, Source, base_value
+from flexarm_env.recordings.columns import MADE, ColumnMap, Source, base_value
 from flexarm_env.recordings.messages import quoted
 from flexarm_env.recordings.table import Table
 
@@ -46,14 +46,12 @@ class Format:
             InputError: for a column map that is missing or of another format, and for content that the format cannot read.
         """
         self._check_map(columns)
-        rate = columns.sources.get("time") if columns else None
         if columns is None:
             table = self.read(content, columns)
-        elif rate is None or rate.key != "rate":
-            table = self._with_conditions(content, columns)
         else:
-            others = {name: source for name, source in columns.sources.items() if name != "time"}
-            table = _evenly_timed(self._with_conditions(content, replace(columns, sources=others)), rate)
+            made = {name: source for name, source in columns.sources.items() if source.key in MADE}
+            read = {name: source for name, source in columns.sources.items() if name not in made}
+            table = _with_made(self._with_conditions(content, replace(columns, sources=read)), made)
         values = {name: as_vector(name, numbers) for name, numbers in table.values.items()}
         if not all(map(len, values.values())):
             raise InputError("has a column without samples; it needs at least two in each")
@@ -64,7 +62,7 @@ class Format:
         use = " or ".join(f"'{key}'" for key in self.keys)
         if columns is None and self.needs_map:
             raise InputError(f"a {self.name} needs a [columns] table that names its columns by {use}")
-        allowed = {*self.keys, "rate"} if self.needs_map else {*self.keys, "rate", "header"}
+        allowed = {*self.keys, *MADE} if self.needs_map else {*self.keys, *MADE, "header"}
         for name, source in (columns.sources | columns.conditions).items() if columns else ():
             if source.key == "header" and self.needs_map:
                 raise InputError(f"is a {self.name}, but [columns] has no place for '{name}'; add {use}")
@@ -90,10 +88,15 @@ class Format:
         return replace(table, values=values, conditions=conditions)
 
 
-def _evenly_timed(table: Table, rate: Source) -> Table:
-    """Add the times of an even rate to a table without times."""
-    if "time" in table.values:
-        raise InputError("has a column of time, but [columns] gives a rate; leave the rate out")
+def _with_made(table: Table, made: Mapping[str, Source]) -> Table:
+    """Add to a table the times of an even rate, and a command that is the same throughout."""
     count = max(map(len, table.values.values()), default=0)
-    time = {"time": np.arange(count) / float(rate.place)}
-    return replace(table, values=time | table.values, sources={"time": rate} | table.sources)
+    values, sources = dict(table.values), dict(table.sources)
+    for name, source in made.items():
+        if name in values:
+            what = "a column of time, but [columns] gives a rate" if name == "time" else f"a column '{name}' beside its value"
+            raise InputError(f"has {what}; leave the {source.key} out")
+        number = float(source.place)
+        column = np.arange(count) / number if source.key == "rate" else np.full(count, number)
+        values, sources = {name: column} | values, {name: source} | sources
+    return replace(table, values=values, sources=sources)

@@ -1,0 +1,70 @@
+"""The conditions that a recording states of its machine: a known mass at the tip, and values in the place of the arm's own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from flexarm_env.arm import Arm
+from flexarm_env.errors import InputError
+from flexarm_env.parameters import check_bounds
+from flexarm_env.plant.plant import Plant
+from flexarm_env.recordings.recording import Recording
+
+#: The condition of a recording that states a mass at the tip.
+PAYLOAD = "payload"
+
+#: Values by path, and the payload [kg] by its name; a key of plants.
+Stated = tuple[tuple[str, float], ...]
+
+
+def stated_by(arm: Arm, recording: Recording) -> Stated:
+    """List what a recording states of its machine: its payload, and the constants that the arm takes from conditions.
+
+    Args:
+        arm: the model, with the paths of its constants by condition.
+        recording: with its conditions.
+
+    Example:
+        >>> from flexarm_env import Arm, simulate
+        >>> arm = Arm.load("thesis")
+        >>> run = simulate(arm.with_effect("payload", mass=0.1), "pulse", duration=1.0, rate=100.0)
+        >>> stated_by(arm, run)
+        ()
+    """
+    conditions = recording.conditions
+    found = [(path, conditions[name]) for name, path in arm.conditions.items() if name in conditions]
+    payload = conditions.get(PAYLOAD, 0.0)
+    return (*sorted(found), *([(PAYLOAD, payload)] if payload else []))
+
+
+def check_stated(arm: Arm, recording: Recording) -> None:
+    """Refuse a payload that the arm has no tip to carry, and a value out of bounds.
+
+    Raises:
+        InputError: for such a condition.
+    """
+    for path, value in stated_by(arm, recording):
+        if path != PAYLOAD:
+            check_bounds(f"{recording.name} states {path}, which", value, arm.parameter(path))
+        elif not arm.has("tip"):
+            raise InputError(
+                f"{recording.name} states a payload of {value:g} kg, but arm '{arm.name}' has no tip to carry it; "
+                "add [beam], or a length to [link], or put the load into hub.inertia and take the line '# payload' out"
+            )
+
+
+def with_stated(arm: Arm, stated: Stated) -> Arm:
+    """Give an arm what a recording states: its values, and its payload beside a tip mass and a payload of the arm's own."""
+    values = {path: value for path, value in stated if path != PAYLOAD}
+    arm = arm.with_values(values) if values else arm
+    payload = dict(stated).get(PAYLOAD, 0.0)
+    if payload == 0.0:
+        return arm
+    effect = next(effect for effect in arm.known.values() if effect.condition == PAYLOAD)
+    own = arm.effects.get(effect.name, {}).get(effect.size_parameter(), 0.0)
+    return arm.with_effect(effect.name, **{effect.size_parameter(): own + payload})
+
+
+def plants_by_stated(arm: Arm, stated: Iterable[Stated], interval: float) -> dict[Stated, Plant]:
+    """Build a plant of the arm, sampled every `interval` [s], for each distinct set of conditions."""
+    return {one: with_stated(arm, one).plant(interval) for one in dict.fromkeys(stated)}

@@ -1,0 +1,97 @@
+"""JSON logs: a list of entries with one number of each quantity, and conditions of the run beside it."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env import units
+from flexarm_env.errors import InputError
+from flexarm_env.recordings.columns import ColumnMap
+from flexarm_env.recordings.formats.base import Format
+from flexarm_env.recordings.messages import quoted
+from flexarm_env.recordings.table import MOST_LINES, Table
+from flexarm_env.sensors import known_sensors
+
+Floats = NDArray[np.float64]
+
+# Possessive, so that no path takes time that grows faster than its length.
+_PATH = re.compile(r"\w++(?:\.\w++|\[\d{1,9}+\])*+")
+_STEP = re.compile(r"(\w+)|\[(\d+)\]")
+_MOST_SHOWN = 12
+
+
+def read(content: bytes, columns: ColumnMap | None) -> Table:
+    """Read the content of a JSON log by its column map.
+
+    A path such as "entries.position" leads through lists to a number of each of their entries; "mass" is a single number,
+    such as a condition; "q[0]" is the first element of a list.
+
+    Args:
+        content: of the file.
+        columns: its column map, without which nothing is read.
+
+    Raises:
+        InputError: for content that is no JSON, and for a path that leads to no numbers.
+    """
+    try:
+        log = json.loads(content)
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"is damaged or no JSON: {quoted(str(error))}") from None
+    sources = {} if columns is None else dict(columns.sources)
+    return Table({name: _column(log, name, str(source.place)) for name, source in sources.items()}, sources)
+
+
+def _column(log: Any, name: str, path: str) -> Floats:
+    """Read the numbers of one quantity; NaN where an entry has none of a signal."""
+    if _PATH.fullmatch(path) is None:
+        raise InputError(f"column '{name}': {quoted(path)} is no path; write one such as 'entries.position' or 'entries.q[0]'")
+    found = _follow(log, _STEP.findall(path), name, path)
+    entries = found if isinstance(found, list) else [found]
+    if entries and all(entry is None for entry in entries):
+        raise InputError(f"column '{name}': {quoted(path)} is in none of {len(entries)} entries; name another")
+    if len(entries) > MOST_LINES:
+        raise InputError(f"has {len(entries)} entries, the limit is {MOST_LINES}; cut it into shorter recordings")
+    return np.array([_number(entry, name, path) for entry in entries], dtype=np.float64)
+
+
+def _follow(value: Any, steps: Sequence[tuple[str, str]], name: str, path: str, in_entry: bool = False) -> Any:
+    """Follow a path: a name behind a list in each of its elements. None where an entry lacks a signal."""
+    for done, (field, index) in enumerate(steps):
+        if field and isinstance(value, list):
+            return [_follow(element, steps[done:], name, path, in_entry=True) for element in value]
+        if field and isinstance(value, dict) and field in value:
+            value = value[field]
+        elif index and isinstance(value, list) and int(index) < len(value):
+            value = value[int(index)]
+        elif in_entry and name in known_sensors() and (value is None or (field and isinstance(value, dict))):
+            return None
+        else:
+            raise InputError(f"column '{name}': {quoted(path)} finds no {quoted(field or f'[{index}]')} in {_holds(value)}")
+    return value
+
+
+def _holds(value: Any) -> str:
+    """Describe a part of a log by its keys, its length or its value."""
+    if isinstance(value, dict):
+        more = ["…"] if len(value) > _MOST_SHOWN else []
+        return f"an object with {', '.join([*map(quoted, list(value)[:_MOST_SHOWN]), *more]) or 'nothing'}"
+    return f"a list of {len(value)} elements, counted from 0" if isinstance(value, list) else quoted(json.dumps(value))
+
+
+def _number(value: Any, name: str, path: str) -> float:
+    """Convert an entry to a number: true and false to 1 and 0, a signal that is absent to NaN."""
+    if value is None and name in known_sensors():
+        return math.nan
+    if not isinstance(value, int | float):
+        raise InputError(f"column '{name}': {quoted(path)} leads to {_holds(value)}, not to a number")
+    return units.as_float(value)
+
+
+FORMAT = Format("JSON log", (), ("variable",), read, also=(".json",))

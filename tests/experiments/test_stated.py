@@ -1,0 +1,104 @@
+"""Conditions of recordings that take the place of an arm's constants."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flexarm_env import Arm, Recording, compare, fit, simulate
+from flexarm_env.errors import InputError
+from flexarm_env.experiments.stated import stated_by, with_stated
+from flexarm_env.identify.calibrate.parameters import free_parameters
+from flexarm_env.identify.replay.dataset import prepare
+
+INERTIA = "hub.inertia"
+
+
+def rigid() -> Arm:
+    return replace(Arm.load("cu-rigid").with_effect("viscous", coefficient=0.02), conditions={"load": INERTIA})
+
+
+def loaded(arm: Arm, name: str, factor: float, **more: float) -> Recording:
+    """A run of the arm with another inertia, which it states."""
+    value = factor * arm.value(INERTIA)
+    run = simulate(arm.with_values({INERTIA: value}), "pulse", duration=3.0, rate=200.0, noise=False, name=name, seed=1)
+    return replace(run, conditions={"load": value, **more})
+
+
+def test_each_recording_is_replayed_with_its_own_value():
+    arm = rigid()
+    runs = [loaded(arm, "light", 1.0), loaded(arm, "heavy", 3.0)]
+    assert compare(arm, runs).free_run < 1e-6
+    assert compare(replace(arm, conditions={}), runs).free_run > 10.0
+    notes = compare(arm, runs).notes
+    assert f"heavy: hub.inertia is {3 * arm.value(INERTIA):g}, as the recording states" in notes
+
+
+def test_commands_are_played_with_the_conditions_of_their_recording():
+    arm = rigid()
+    heavy = loaded(arm, "heavy", 3.0, trial=7.0)
+    played = simulate(arm, heavy, noise=False)
+    np.testing.assert_allclose(played.signals["arm_angle"], heavy.signals["arm_angle"], atol=1e-12)
+    assert played.conditions == {"load": heavy.conditions["load"]}
+
+
+def test_a_constant_that_every_recording_states_is_not_fitted():
+    arm = rigid()
+    light, heavy = loaded(arm, "light", 1.0), loaded(arm, "heavy", 3.0)
+    dataset = prepare(arm, [light, heavy])[1]
+    assert INERTIA not in [one.path for one in free_parameters(arm, arm, dataset)]
+    some = prepare(arm, [replace(light, conditions={}), heavy])[1]
+    assert INERTIA in [one.path for one in free_parameters(arm, arm, some)]
+
+
+def test_the_others_are_fitted_over_recordings_that_differ():
+    arm = rigid()
+    runs = [loaded(arm, "light", 1.0), loaded(arm, "heavy", 3.0)]
+    wrong = arm.with_values({"effects.viscous.coefficient": 0.026})
+    found = fit(wrong, runs, jobs=1)
+    assert found.arm.value("effects.viscous.coefficient") == pytest.approx(0.02, rel=0.01)
+    assert found.arm.value(INERTIA) == arm.value(INERTIA)
+    assert found.arm.conditions == arm.conditions
+
+
+def test_an_arm_file_keeps_them(tmp_path):
+    arm = rigid()
+    arm.save(tmp_path / "a.toml")
+    assert Arm.load(tmp_path / "a.toml") == arm
+
+
+def test_a_payload_adds_to_the_arm_and_a_value_replaces_its_own():
+    arm = replace(Arm.load("thesis"), conditions={"rotor": "drive.motor_inertia"})
+    run = replace(simulate(arm, "pulse", duration=1.0, rate=100.0), conditions={"payload": 0.2, "rotor": 0.001, "trial": 2.0})
+    stated = stated_by(arm, run)
+    assert stated == (("drive.motor_inertia", 0.001), ("payload", 0.2))
+    found = with_stated(arm.with_effect("payload", mass=0.1), stated)
+    assert found.value("effects.payload.mass") == pytest.approx(0.3)
+    assert found.value("drive.motor_inertia") == 0.001
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ('load = "hub.inertai"', "conditions.load: unknown constant 'hub.inertai'"),
+        ('load = "effects.viscous.coefficient"', "conditions.load: unknown constant"),
+        ("load = 3", "conditions.load: unknown constant 3"),
+        ('a = "hub.inertia"\nb = "hub.inertia"', "conditions.b: another condition sets 'hub.inertia'"),
+        ('payload = "hub.inertia"', "conditions.payload: every arm takes up 'payload' as it is"),
+    ],
+)
+def test_a_wrong_condition_is_refused(tmp_path, line, words):
+    path = tmp_path / "a.toml"
+    Arm.load("cu-rigid").save(path)
+    path.write_text(f"{path.read_text()}\n[conditions]\n{line}\n")
+    with pytest.raises(InputError) as caught:
+        Arm.load(path)
+    assert words in str(caught.value)
+
+
+def test_a_value_out_of_bounds_is_refused():
+    arm = rigid()
+    with pytest.raises(InputError, match=r"heavy states hub\.inertia, which = -1 kg\*m\*\*2 is out of bounds"):
+        compare(arm, [replace(loaded(arm, "heavy", 3.0), conditions={"load": -1.0})])
