@@ -118,10 +118,10 @@ def test_of_held_readings_the_first_counts(held: np.ndarray, times: int, phase: 
     assert np.array_equal(found, expected, equal_nan=True)
 
 
-def test_a_held_reading_that_comes_late_counts_from_its_change() -> None:
-    values = np.array([1.0] * 5 + [2.0] * 6 + [3.0] * 4 + [4.0] * 5)
-    found = Corrections(repeats=5).apply(np.arange(20), values)
-    assert np.flatnonzero(~np.isnan(found)).tolist() == [0, 5, 10, 11, 15]
+def test_a_held_reading_that_comes_late_counts_from_its_change_and_once() -> None:
+    values = np.array([1.0] * 5 + [2.0] * 6 + [3.0] * 4 + [4.0] * 10)
+    found = Corrections(repeats=5).apply(np.arange(25), values)
+    assert np.flatnonzero(~np.isnan(found)).tolist() == [0, 5, 11, 15, 20]
 
 
 @given(
