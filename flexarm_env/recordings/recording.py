@@ -17,7 +17,7 @@ from flexarm_env.display import Shown
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import write_whole
 from flexarm_env.parameters import INPUTS
-from flexarm_env.recordings.checks import as_vector, check_conditions, check_time, check_values
+from flexarm_env.recordings.checks import as_vector, check_conditions, check_time, check_values, with_held_command
 from flexarm_env.recordings.clock import RestartError
 from flexarm_env.recordings.column_maps import load_columns
 from flexarm_env.recordings.columns import UNITS, ColumnMap, Source, check_calibration, check_names
@@ -358,6 +358,9 @@ def _recording(
     check_time(arrays["time"], lines)
     corrections = {column: source.corrections for column, source in (sources or {}).items()}
     arrays, notes = corrected(arrays, corrections)
+    if sources is not None:
+        arrays[kind], note = with_held_command(arrays[kind], kind, lines)
+        notes = (*notes, note) if note else notes
     check_values(arrays, lines)
     check_conditions(conditions)
     return Recording(

@@ -44,6 +44,23 @@ def test_a_cell_of_a_signal_may_be_empty(tmp_path: Path, cell: str) -> None:
     assert "arm_angle (66.7 % measured)" in repr(recording)
 
 
+@pytest.mark.parametrize("cell", ["", " ", "\t", "NaN", "nan", "NA", " NA ", '""'])
+def test_an_empty_cell_of_the_command_holds_the_last_one(tmp_path: Path, cell: str) -> None:
+    """As a drive does; some logs have a row for each message of any sensor."""
+    recording = Recording.read(save(tmp_path, GOOD.replace("2,0.6", f"{cell},0.6")))
+    assert recording.command.tolist() == [1, 1, 3]
+    assert recording.signals["arm_angle"].tolist() == [0.5, 0.6, 0.7]
+    assert recording.notes == ("'current' stands in 2 of 3 rows; in the others the last command holds",)
+    recording.write(tmp_path / "again.csv")
+    again = Recording.read(tmp_path / "again.csv")
+    assert (again.command.tolist(), again.notes) == ([1, 1, 3], ())
+
+
+def test_arrays_have_a_command_for_every_sample() -> None:
+    with pytest.raises(InputError, match="sample 2, column 'current': is nan"):
+        Recording.from_arrays("run", [0, 1, 2], "current", [1, np.nan, 2], {"arm_angle": [0, 1, 2]})
+
+
 @pytest.mark.parametrize(("delimiter", "decimal"), [(";", ","), ("\t", "."), (" ", ".")])
 def test_so_may_those_of_other_tables(tmp_path: Path, delimiter: str, decimal: str) -> None:
     rows = [["0", "1.5", "2.5"], ["1", "1.5", "NA" if delimiter == " " else ""], ["2", "1.5", "nan"]]

@@ -191,3 +191,18 @@ def test_mcap_with_json(tmp_path: Path) -> None:
     writer.finish()
     path = save(tmp_path, file.getvalue(), "run.mcap")
     assert is_right(Recording.read(path, named("variable", "log_time", "/cmd.u", "/encoder.position[0]")))
+
+
+def test_messages_of_several_topics_in_one_table(tmp_path: Path) -> None:
+    """A row for each message: the cells of the other topics are empty."""
+    rows = "__time,/motor/command/data,/joint_states/hub/position\n"
+    stamp = 1_700_000_000.0
+    for k, (time, volts, angle) in enumerate(ROWS):
+        rows += f"{stamp + time:.6f},{volts},{angle if k == 0 else ''}\n"
+        rows += f"{stamp + time + 0.004:.6f},,{angle}\n" if k else ""
+    columns = named("column", "__time", "/motor/command/data", "/joint_states/hub/position")
+    recording = Recording.read(save(tmp_path, rows), columns)
+    assert np.allclose(recording.command, np.repeat(VOLTS, 2)[1:])
+    measured = ~np.isnan(recording.signals["arm_angle"])
+    assert np.allclose(recording.signals["arm_angle"][measured], ANGLES)
+    assert "'voltage' stands in 6 of 11 rows; in the others the last command holds" in recording.notes
