@@ -20,6 +20,7 @@ from flexarm_env.sensors import known_sensors
 # Possessive, so that no cell takes time that grows faster than its length.
 _DECIMAL_COMMA = re.compile(r"\s*+[+-]?+\d++,\d++\s*+")
 _COMMA_AND_THREE = re.compile(r"\s*+[+-]?+[1-9]\d{0,2}+(?:,\d{3})++\s*+")
+_DATE = re.compile(r"\s*+\d{1,2}[/.-]\d{1,2}[/.-]\d{2,4}[T ]")
 
 
 def is_blank(line: str, delimiter: str = " ") -> bool:
@@ -188,4 +189,6 @@ def _not_a_number(cell: str) -> str:
         )
     if _DECIMAL_COMMA.fullmatch(cell):
         return f"{quoted(cell)} has a decimal comma; say decimal = ',' in [columns], or export with decimal points"
+    if _DATE.match(cell):
+        return f"{quoted(cell)} is a date whose day and month may be read two ways; export it as 2024-05-31 10:00:00.5"
     return f"{quoted(cell)} is not a number; correct it"
