@@ -785,6 +785,10 @@ SOUND_RUNS = (
     "no alarm on 236 sound recordings (66 machines of seed 5, practice, CU Boulder, EMPS); 1 on 280 simulated ones of seven arms "
     "with constants 30 % off and effects, since then excluded by a bound; no sweep recorded"
 )
+EFFECTS_OF_THE_HUB = (
+    "three simulated arms, three inputs, eight effects at one and four times their typical size: at best lags above 0.004 s play "
+    "leaves 0.53 to 0.98 of the difference, others 0.36 to 0.97; angles 8 to 48 ms late leave 0.0001 to 0.23, and 0.57 in one run"
+)
 FAULTY_RUNS = (
     "300 simulated recordings of seven arms with a fault at random, 298 found with their size within 2 %; no sweep recorded"
 )
@@ -894,6 +898,14 @@ class MotionFaults:
         "The same where more than the noise is left.",
         "350 simulated machines with constants 30 % off and effects: lags of up to 0.084 s without a clock's fault",
         "s",
+    )
+    least_hub_lag: float = tuned(
+        0.004, "The same for the angle behind the speed, which are readings of one motion.", EFFECTS_OF_THE_HUB, "s"
+    )
+    longest_hub_lag: float = tuned(0.06, "Longest of these lags; above `least_lag` those against the model are tried.", unit="s")
+    hub_lag_resolution: float = tuned(4e-5, "A step below this ends the search of it.", "1 % of `least_hub_lag`", "s")
+    lag_leaves: float = tuned(
+        0.25, "Share of the difference between angle and speed that is left at the lag of a clock, at most.", EFFECTS_OF_THE_HUB
     )
     same_lag: float = tuned(0.02, "Signals whose lags differ by less are late together.", SOUND_RUNS, "s")
     unexplained: float = tuned(0.4, "A lag is worth it if it leaves less than this share of what is unexplained.", SOUND_RUNS)
