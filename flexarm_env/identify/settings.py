@@ -820,7 +820,7 @@ class Inspecting:
     most_wrapping: float = tuned(0.3, "Share of the changes that are wraps, at most.", UNHARMED)
     same_jump: float = tuned(0.02, "Jumps by one modulus differ by less than this share of it.", UNHARMED)
     most_alike: float = tuned(0.75, "Share of the jumps that differ by less; the others are also those of the motion.", UNHARMED)
-    same_turn: float = tuned(0.002, "Jumps of an angle that differ by less from a whole turn are one.", UNHARMED)
+    same_turn: float = tuned(0.002, "Jumps that differ by less from a turn or a counter's modulus are that.", UNHARMED)
     seldom: float = tuned(0.98, "Quantile of a signal's changes that starts and stops exceed.", SLOWLY)
     smooth: float = tuned(0.35, "Such other changes of a signal that wraps are below this share of the modulus.", SLOWLY)
     fewest_flickers: int = tuned(
@@ -828,6 +828,11 @@ class Inspecting:
     )
     goes_on: int = tuned(
         5, "Readings on each side of a jump that show whether the motion goes on, or the reading stays.", UNHARMED
+    )
+    goes_on_slowly: int = tuned(
+        20,
+        "The same of a motion that a few readings do not show.",
+        "an angle at 0.5 rad/s read every 4 ms with a noise of 2 mrad wraps unseen with 5",
     )
     least_motion: float = tuned(3.0, "Motion over them, over the noise.", UNHARMED)
     wild: float = tuned(

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from flexarm_env.arm import Arm
+from flexarm_env.identify.inspect.both import with_common_lines
 from flexarm_env.identify.inspect.catalogue import CHECKS
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.mend import mended
@@ -74,7 +75,7 @@ def inspect_recordings(arm: Arm, recordings: Sequence[Recording], settings: Sett
         faults += found
         sound.append(left)
     noises = sensor_noise(arm, recordings, sound, settings)
-    faults = with_motion_faults(arm, recordings, sound, faults, noises, settings)
+    faults = with_common_lines(with_motion_faults(arm, recordings, sound, faults, noises, settings))
     facts = signal_facts(recordings, sound, noises, settings)
     return Inspection(tuple(faults), facts, tuple(sound), time.perf_counter() - began, noises)
 
