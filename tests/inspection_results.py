@@ -19,8 +19,9 @@ from flexarm_env.identify.inspect.excitation import (
     Excitation,
 )
 from flexarm_env.identify.inspect.fault import Fault
-from flexarm_env.identify.inspect.inspection import Inspection, SignalFacts
+from flexarm_env.identify.inspect.inspection import Inspection
 from flexarm_env.identify.inspect.overview import Overview
+from flexarm_env.identify.inspect.signal_facts import SignalFacts
 from flexarm_env.recordings.recording import Recording
 
 CUT = Fault(

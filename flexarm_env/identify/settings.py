@@ -780,6 +780,10 @@ SOUND_RUNS = (
     "no alarm on 236 sound recordings (66 machines of seed 5, practice, CU Boulder, EMPS); 1 on 280 simulated ones of seven arms "
     "with constants 30 % off and effects, since then excluded by a bound; no sweep recorded"
 )
+EFFECTS_OF_THE_HUB = (
+    "three simulated arms, three inputs, eight effects at one and four times their typical size: at best lags above 0.004 s play "
+    "leaves 0.53 to 0.98 of the difference, others 0.36 to 0.97; angles 8 to 48 ms late leave 0.0001 to 0.23, and 0.57 in one run"
+)
 FAULTY_RUNS = (
     "300 simulated recordings of seven arms with a fault at random, 298 found with their size within 2 %; no sweep recorded"
 )
@@ -811,7 +815,7 @@ class Inspecting:
     most_wrapping: float = tuned(0.3, "Share of the changes that are wraps, at most.", UNHARMED)
     same_jump: float = tuned(0.02, "Jumps by one modulus differ by less than this share of it.", UNHARMED)
     most_alike: float = tuned(0.75, "Share of the jumps that differ by less; the others are also those of the motion.", UNHARMED)
-    same_turn: float = tuned(0.002, "Jumps of an angle that differ by less from a whole turn are one.", UNHARMED)
+    same_turn: float = tuned(0.002, "Jumps that differ by less from a turn or a counter's modulus are that.", UNHARMED)
     seldom: float = tuned(0.98, "Quantile of a signal's changes that starts and stops exceed.", SLOWLY)
     smooth: float = tuned(0.35, "Such other changes of a signal that wraps are below this share of the modulus.", SLOWLY)
     fewest_flickers: int = tuned(
@@ -819,6 +823,11 @@ class Inspecting:
     )
     goes_on: int = tuned(
         5, "Readings on each side of a jump that show whether the motion goes on, or the reading stays.", UNHARMED
+    )
+    goes_on_slowly: int = tuned(
+        20,
+        "The same of a motion that a few readings do not show.",
+        "an angle at 0.5 rad/s read every 4 ms with a noise of 2 mrad wraps unseen with 5",
     )
     least_motion: float = tuned(3.0, "Motion over them, over the noise.", UNHARMED)
     wild: float = tuned(
@@ -889,6 +898,14 @@ class MotionFaults:
         "The same where more than the noise is left.",
         "350 simulated machines with constants 30 % off and effects: lags of up to 0.084 s without a clock's fault",
         "s",
+    )
+    least_hub_lag: float = tuned(
+        0.004, "The same for the angle behind the speed, which are readings of one motion.", EFFECTS_OF_THE_HUB, "s"
+    )
+    longest_hub_lag: float = tuned(0.06, "Longest of these lags; above `least_lag` those against the model are tried.", unit="s")
+    hub_lag_resolution: float = tuned(4e-5, "A step below this ends the search of it.", "1 % of `least_hub_lag`", "s")
+    lag_leaves: float = tuned(
+        0.25, "Share of the difference between angle and speed that is left at the lag of a clock, at most.", EFFECTS_OF_THE_HUB
     )
     same_lag: float = tuned(0.02, "Signals whose lags differ by less are late together.", SOUND_RUNS, "s")
     unexplained: float = tuned(0.4, "A lag is worth it if it leaves less than this share of what is unexplained.", SOUND_RUNS)

@@ -76,9 +76,9 @@ class Session:
         for name, content in files:
             try:
                 found = read_upload(self.base, name, content, self.columns, taken)
-                prepare(self.base, [*taken, found])
-                taken.append(found)
-                lines += [f"{found.source}: {note}" for note in found.notes]
+                prepare(self.base, [*taken, *found])
+                taken += found
+                lines += [f"{one.source}: {note}" for one in found for note in one.notes]
             except InputError as error:
                 lines.append(str(error))
         if len(taken) > len(self.recordings):

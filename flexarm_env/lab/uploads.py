@@ -17,8 +17,8 @@ MOST_RECORDINGS = 12
 MOST_SAMPLES = 2_000_000
 
 
-def read_upload(arm: Arm, name: str, content: bytes, columns: Path | None, present: list[Recording]) -> Recording:
-    """Read the recording in an uploaded file.
+def read_upload(arm: Arm, name: str, content: bytes, columns: Path | None, present: list[Recording]) -> list[Recording]:
+    """Read the recordings in an uploaded file: one, or as many as it has episodes.
 
     Args:
         arm: recorded in it.
@@ -39,12 +39,16 @@ def read_upload(arm: Arm, name: str, content: bytes, columns: Path | None, prese
         path = Path(folder) / file
         path.write_bytes(content)
         try:
-            found = replace(*read_recordings(arm, [path], columns), source=file)
+            found = [replace(one, source=file) for one in read_recordings(arm, [path], columns)]
         except InputError as error:
             raise InputError(str(error).replace(f"{folder}/", "").replace(str(Path(folder) / ""), "")) from None
-    if any(found.name == one.name for one in present):
-        raise InputError(f"{file}: a recording '{found.name}' is here already; remove it or rename the file")
-    if sum(map(len, present)) + len(found) > MOST_SAMPLES:
+    if len(present) + len(found) > MOST_RECORDINGS:
+        raise InputError(f"{file}: has {len(found)} episodes, {MOST_RECORDINGS} recordings are the most; name some in [columns]")
+    names = {one.name for one in present}
+    for one in found:
+        if one.name in names:
+            raise InputError(f"{file}: a recording '{one.name}' is here already; remove it or rename the file")
+    if sum(map(len, [*present, *found])) > MOST_SAMPLES:
         raise InputError(f"{file}: makes more than {MOST_SAMPLES} samples in all; cut the recordings shorter")
     return found
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.errors import InputError
+from flexarm_env.parameters import INPUTS
 from flexarm_env.recordings.columns import ColumnMap
 from flexarm_env.recordings.messages import quoted
 from flexarm_env.sensors import known_sensors
@@ -19,6 +20,7 @@ from flexarm_env.sensors import known_sensors
 # Possessive, so that no cell takes time that grows faster than its length.
 _DECIMAL_COMMA = re.compile(r"\s*+[+-]?+\d++,\d++\s*+")
 _COMMA_AND_THREE = re.compile(r"\s*+[+-]?+[1-9]\d{0,2}+(?:,\d{3})++\s*+")
+_DATE = re.compile(r"\s*+\d{1,2}[/.-]\d{1,2}[/.-]\d{2,4}[T ]")
 
 
 def is_blank(line: str, delimiter: str = " ") -> bool:
@@ -78,7 +80,7 @@ def _point(cell: str, decimal: str) -> str:
 def read_numbers(
     rows: list[str], lines: Sequence[int], labels: dict[int, str], width: int, even: bool, layout: ColumnMap
 ) -> NDArray[np.float64]:
-    """Read the (n, len(labels)) numbers of the columns in `labels`; NaN for an empty cell of a signal.
+    """Read the (n, len(labels)) numbers of the columns in `labels`; NaN for an empty cell of a signal or command.
 
     Args:
         rows: the text of each sample.
@@ -99,7 +101,7 @@ def read_numbers(
         read = _quickly(texts, delimiter, list(labels))
         if read is None:
             read = _quickly(_filled(texts, delimiter), delimiter, list(labels))
-        needed = [i for i, name in enumerate(labels.values()) if name not in known_sensors()]
+        needed = [i for i, name in enumerate(labels.values()) if not _may_be_absent(name)]
         if read is not None and not np.isnan(read[:, needed]).any():
             return read
     return np.array(list(_row_by_row(rows, lines, labels, width, layout)), dtype=np.float64)
@@ -131,8 +133,13 @@ def _filled(rows: list[str], delimiter: str) -> list[str]:
     return [empty.sub("nan", row) for row in rows]
 
 
+def _may_be_absent(name: str) -> bool:
+    """Whether a column may have empty cells: a signal is not measured there, and a command goes on."""
+    return name in known_sensors() or name in INPUTS
+
+
 def _is_absent(cell: str) -> bool:
-    """Whether a cell is that of a signal which was not measured; "NaN" is a number."""
+    """Whether a cell holds nothing; "NaN" is a number."""
     return cell.strip(" \t") in ("", "NA")
 
 
@@ -156,7 +163,7 @@ def _row_by_row(
             hint = _width_hint(row, len(cells), width, layout.delimiter)
             raise InputError(f"{where}: has {len(cells)} cells where {width} are expected; {hint}")
         for index, name in labels.items():
-            absent = name in known_sensors() and _is_absent(cells[index])
+            absent = _may_be_absent(name) and _is_absent(cells[index])
             if not absent and not is_number(cells[index], layout.decimal):
                 raise InputError(f"{where}, column '{name}': {_not_a_number(cells[index])}")
         yield [math.nan if _is_absent(cell) else float(_point(cell, layout.decimal)) for cell in map(cells.__getitem__, labels)]
@@ -174,7 +181,7 @@ def _width_hint(row: str, found: int, expected: int, delimiter: str) -> str:
 
 def _not_a_number(cell: str) -> str:
     if not cell.strip():
-        return "is empty; a replay needs time, command and reference in every row; only a signal may be absent"
+        return "is empty; a replay needs time and reference in every row; only signals and later commands may be absent"
     if _COMMA_AND_THREE.fullmatch(cell):
         return (
             f"{quoted(cell)} has a comma, which may mark thousands or decimals;"
@@ -182,4 +189,6 @@ def _not_a_number(cell: str) -> str:
         )
     if _DECIMAL_COMMA.fullmatch(cell):
         return f"{quoted(cell)} has a decimal comma; say decimal = ',' in [columns], or export with decimal points"
+    if _DATE.match(cell):
+        return f"{quoted(cell)} is a date whose day and month may be read two ways; export it as 2024-05-31 10:00:00.5"
     return f"{quoted(cell)} is not a number; correct it"

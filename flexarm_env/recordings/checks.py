@@ -64,6 +64,35 @@ def check_values(arrays: Mapping[str, Floats], lines: Sequence[int]) -> None:
             raise InputError(f"column '{column}': has no reading in any row; leave the column out")
 
 
+def with_held_command(values: Floats, name: str, lines: Sequence[int]) -> tuple[Floats, str]:
+    """Let commands (n,) hold up to the next one, as a drive holds them; NaN where a file has none.
+
+    Args:
+        values: in SI.
+        name: of the column.
+        lines: the line of each sample in its file, for messages; empty where there is none.
+
+    Returns:
+        The commands, and a note on them; "" where all are given.
+
+    Raises:
+        InputError: for rows before the first command.
+    """
+    given = np.flatnonzero(~np.isnan(values))
+    if len(given) == len(values):
+        return values, ""
+    if not given.size:
+        raise InputError(f"{_place(0, lines)}, column '{name}': is empty, as all of it: there is no command in any row")
+    if given[0]:
+        first = _place(int(given[0]), lines)
+        raise InputError(
+            f"{_place(0, lines)}, column '{name}': is empty, and the first command stands in {first}; "
+            "a replay needs to know the command from the first row on"
+        )
+    held = values[given[np.searchsorted(given, np.arange(len(values)), side="right") - 1]]
+    return held, f"'{name}' stands in {len(given)} of {len(values)} rows; in the others the last command holds"
+
+
 def check_time(time: Floats, lines: Sequence[int]) -> None:
     """Check that time (n,) [s] is finite and rises in plausible steps.
 

@@ -19,6 +19,7 @@ from flexarm_env.recordings.columns import MADE, UNITS, ColumnMap, Source, check
 from flexarm_env.recordings.messages import file_error
 
 _SETTINGS: dict[str, type] = {"delimiter": str, "header_prefix": str, "skip_rows": int, "decimal": str}
+_OTHERS = (*_SETTINGS, "conditions", "episode_index")
 
 
 def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap) -> ColumnMap:
@@ -28,8 +29,9 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
     with `row` or `index` of a matrix), with `unit`, and `sign` or `scale` if needed; `file` names another file that has it.
     Entries that all lack a place refine FlexArm's own header. A signal also has `ignore`, `range`, `repeats`, `wrap` and
     `shift`, time `shift`; a command that is the same in every row has a `value` alone. Beside them stand `delimiter`,
-    `header_prefix`, `skip_rows`, `decimal`, and a table `conditions` of columns that hold one number each, such as a gain. A
-    file may have a `[controller]` table, too.
+    `header_prefix`, `skip_rows`, `decimal`, and a table `conditions` of columns that hold one number each, such as a gain, and
+    `episode_index`, the number or numbers of those that are read of a file with several. A file may have a `[controller]`
+    table, too.
 
     Args:
         columns: the file, or the table.
@@ -72,11 +74,12 @@ def _column_map(table: Mapping[str, Any]) -> ColumnMap:
         if key in UNITS:
             parts = read_sources(key, value)
             sources |= dict(zip(part_names(key, len(parts)), parts, strict=True))
-        elif key not in (*_SETTINGS, "conditions"):
-            raise InputError(f"[columns]: unknown key {key!r}{did_you_mean(str(key), (*UNITS, *_SETTINGS, 'conditions'))}")
+        elif key not in _OTHERS:
+            raise InputError(f"[columns]: unknown key {key!r}{did_you_mean(str(key), (*UNITS, *_OTHERS))}")
     settings = {key: typed(key, table[key], _SETTINGS[key]) for key in _SETTINGS if key in table}
     _check_settings(settings)
-    columns = ColumnMap(sources, **settings, conditions=_conditions(table.get("conditions", {})))
+    conditions = _conditions(table.get("conditions", {}))
+    columns = ColumnMap(sources, **settings, conditions=conditions, episodes=_episodes(table.get("episode_index", [])))
     _check_kinds(columns)
     if not (table and columns.refines):
         try:
@@ -84,6 +87,14 @@ def _column_map(table: Mapping[str, Any]) -> ColumnMap:
         except InputError as error:
             raise InputError(f"[columns] {error}") from None
     return columns
+
+
+def _episodes(value: Any) -> tuple[int, ...]:
+    """Check the numbers of the episodes that are read."""
+    numbers = value if isinstance(value, list) else [value]
+    if any(isinstance(one, bool) or not isinstance(one, int) or one < 0 for one in numbers) or len(set(numbers)) < len(numbers):
+        raise InputError(f"[columns] episode_index: is {value!r}; write the number of an episode, such as 3, or a list")
+    return tuple(numbers)
 
 
 def _check_kinds(columns: ColumnMap) -> None:

@@ -65,6 +65,8 @@ class ColumnMap:
         skip_rows: lines to drop at the top.
         decimal: "." or ",".
         conditions: the place of each condition that the file states as a column or variable of equal numbers.
+        episodes: numbers of those that are read of a file with several; all where none is named.
+        frame_rate: frames per second [Hz] of which the file counts the times; 0 where it states none.
         controller: the law under which the recordings were made, if it stands beside the map.
     """
 
@@ -74,6 +76,8 @@ class ColumnMap:
     skip_rows: int = 0
     decimal: str = "."
     conditions: dict[str, Source] = field(default_factory=dict)
+    episodes: tuple[int, ...] = ()
+    frame_rate: float = 0.0
     controller: ControlLaw | None = None
 
     @property

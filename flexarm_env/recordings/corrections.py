@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from flexarm_env import units
 from flexarm_env.errors import InputError
+from flexarm_env.recordings.resolution import repeated_readings
 from flexarm_env.sensors import known_sensors
 
 Floats = NDArray[np.float64]
@@ -54,7 +55,7 @@ class Corrections:
         for start, stop in self.ignore:
             absent |= (time >= start) & (time < stop)
         if self.repeats > 1:
-            absent |= _held(values, self.repeats)
+            absent |= repeated_readings(values, self.repeats)
         found = np.where(absent, np.nan, values)
         if self.wrap:
             there = np.isfinite(found)
@@ -119,17 +120,6 @@ def _shift_note(name: str, shift: float, sample_time: float) -> str:
     left = f"; {1e3 * rest:.3g} ms of it are less than a row" if abs(rest) > 1e-6 * sample_time else ""
     count = f"{abs(rows)} row{'' if abs(rows) == 1 else 's'}"
     return f"'{name}' was moved by {count}, {'back' if rows >= 0 else 'forward'} in time{left}"
-
-
-def _held(values: Floats, repeats: int) -> NDArray[np.bool_]:
-    """Find the rows (n,) that only repeat a reading, counted from each change; before the first change, back from it."""
-    changes = np.flatnonzero(values[1:] != values[:-1]) + 1
-    first = int(changes[0]) if changes.size else 0
-    rows = np.arange(len(values))
-    last_change = np.zeros(len(values), dtype=np.int64)
-    last_change[changes] = changes
-    since = rows - np.maximum(np.maximum.accumulate(last_change), first)
-    return np.asarray(since % repeats != 0)
 
 
 def _moved(time: Floats, values: Floats, shift: float) -> Floats:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from flexarm_env.errors import InputError
 from flexarm_env.recordings.formats.catalogue import folder_suffixes, suffixes
+from flexarm_env.recordings.formats.lerobot import data_files
 from flexarm_env.recordings.messages import file_error
 from flexarm_env.recordings.table import LARGEST_FILE
 
@@ -49,7 +50,7 @@ def files_of(paths: Iterable[PathLike]) -> list[Path]:
     """
     files: list[Path] = []
     for path in map(Path, paths):
-        files += _inside(path) if path.is_dir() else [path]
+        files += (data_files(path) or _inside(path)) if path.is_dir() else [path]
     if not files:
         raise InputError("no recordings; name a file or a folder")
     places = [os.path.realpath(file) for file in files]

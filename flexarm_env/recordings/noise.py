@@ -70,11 +70,12 @@ class Readings:
 
     def windows(self) -> Windows:
         """Cut the distinct readings into windows."""
-        known = np.isfinite(self.values)
-        if self.motion is not None:
-            known &= np.isfinite(self.motion)
-            return cut_windows(self.time[known], self.values[known], self.motion[known])
-        return cut_windows(*distinct_readings(self.time[known], self.values[known]))
+        known = np.flatnonzero(np.isfinite(self.values))
+        known = known[distinct_readings(self.values[known])]
+        if self.motion is None:
+            return cut_windows(self.time[known], self.values[known])
+        known = known[np.isfinite(self.motion[known])]
+        return cut_windows(self.time[known], self.values[known], self.motion[known])
 
 
 def estimate_noise(runs: Sequence[Readings]) -> Noise | None:

@@ -17,14 +17,16 @@ from flexarm_env.display import Shown
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import write_whole
 from flexarm_env.parameters import INPUTS
-from flexarm_env.recordings.checks import as_vector, check_conditions, check_time, check_values
+from flexarm_env.recordings.checks import as_vector, check_conditions, check_time, check_values, with_held_command
 from flexarm_env.recordings.clock import RestartError
 from flexarm_env.recordings.column_maps import load_columns
 from flexarm_env.recordings.columns import UNITS, ColumnMap, Source, check_calibration, check_names
 from flexarm_env.recordings.conditions import CONDITIONS
 from flexarm_env.recordings.corrections import corrected
+from flexarm_env.recordings.episodes import check_episodes, episodes_of
 from flexarm_env.recordings.files import PathLike, read_bytes
 from flexarm_env.recordings.formats.catalogue import format_of
+from flexarm_env.recordings.formats.lerobot import with_info
 from flexarm_env.recordings.joined import read_joined, recording_files, run_name
 from flexarm_env.recordings.messages import file_error
 from flexarm_env.recordings.sidecar import read_conditions, sidecar_of
@@ -190,6 +192,27 @@ class Recording(Shown):
             >>> bool((other.signals["arm_angle"] == run.signals["arm_angle"]).all())
             True
         """
+        found = cls.read_each(path, columns, calibration, require_signal)
+        if len(found) == 1:
+            return found[0]
+        layout = None if columns is None else load_columns(columns)
+        check_episodes(len(found), layout, f"{path}: ")
+        episodes = f"{len(found)} episodes, which are as many recordings"
+        raise file_error(Path(path), f"has {episodes}; name one by episode_index in [columns], or read all by read_all")
+
+    @classmethod
+    def read_each(
+        cls,
+        path: PathLike,
+        columns: Columns | None = None,
+        calibration: Mapping[str, float] | None = None,
+        require_signal: bool = True,
+    ) -> list[Recording]:
+        """Read the recordings in a file: one, or each episode of a LeRobot file that the map names. Arguments as `read`.
+
+        Raises:
+            InputError: as `read`.
+        """
         layout = None if columns is None else load_columns(columns)
         gains = dict(calibration or {})
         check_calibration(gains)
@@ -198,17 +221,23 @@ class Recording(Shown):
             if layout is not None and layout.joins:
                 table, checksum = read_joined(path, layout, gains)
                 name = run_name(layout, path) or path.resolve().parent.name
-                recording = _recording(name, table.values, table.conditions, (), table.sources)
+                recordings = [_recording(name, table.values, table.conditions, (), table.sources)]
             else:
                 content = read_bytes(path)
-                table = format_of(path).table(content, layout)
+                layout = None if layout is None else with_info(path, layout)
+                tables = episodes_of(format_of(path).table(content, layout), path.stem, layout)
                 checksum = hashlib.sha256(content).hexdigest()
-                recording = _recording(path.stem, table.in_si(gains), table.conditions, table.lines, table.sources)
-            _check_signal(recording, require_signal, " to its header" if layout is None else " to [columns]")
+                recordings = [
+                    _recording(name, table.in_si(gains), table.conditions, table.lines, table.sources)
+                    for name, table in tables.items()
+                ]
+            for recording in recordings:
+                _check_signal(recording, require_signal, " to its header" if layout is None else " to [columns]")
         except InputError as error:
             raise file_error(path, error) from None
         controller = None if layout is None else layout.controller
-        return replace(_with_sidecar(recording, path), controller=controller, source=str(path), sha256=checksum)
+        complete = [_with_sidecar(one, path) for one in recordings]
+        return [replace(one, controller=controller, source=str(path), sha256=checksum) for one in complete]
 
     @classmethod
     def read_all(
@@ -218,7 +247,7 @@ class Recording(Shown):
         calibration: Mapping[str, float] | None = None,
         require_signal: bool = True,
     ) -> list[Recording]:
-        """Read the recordings in files and folders; a folder stands for those in it, sorted by name.
+        """Read the recordings in files and folders; a folder stands for those in it, sorted by name, or for its LeRobot data set.
 
         Where names would come twice, they have the folder's name before them. Arguments as `read`.
 
@@ -236,7 +265,8 @@ class Recording(Shown):
         """
         layout = None if columns is None else load_columns(columns)
         files = recording_files([paths] if isinstance(paths, (str, os.PathLike)) else paths, layout)
-        recordings = [cls.read(file, layout, calibration, require_signal) for file in files]
+        recordings = [one for file in files for one in cls.read_each(file, layout, calibration, require_signal)]
+        check_episodes(len(recordings), layout)
         return with_distinct_names(recordings)
 
     def write(self, path: PathLike) -> None:
@@ -331,6 +361,9 @@ def _recording(
     check_time(arrays["time"], lines)
     corrections = {column: source.corrections for column, source in (sources or {}).items()}
     arrays, notes = corrected(arrays, corrections)
+    if sources is not None:
+        arrays[kind], note = with_held_command(arrays[kind], kind, lines)
+        notes = (*notes, note) if note else notes
     check_values(arrays, lines)
     check_conditions(conditions)
     return Recording(

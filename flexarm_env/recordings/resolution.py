@@ -55,21 +55,39 @@ def _places(gaps: Floats) -> Floats:
     return np.concatenate([[0.0], np.cumsum(np.round(gaps / step))])
 
 
-def distinct_readings(time: Floats, readings: Floats) -> tuple[Floats, Floats]:
-    """Leave out readings that repeat the last one where the sensor is slower than the rows.
+def distinct_readings(readings: Floats) -> NDArray[np.bool_]:
+    """Mark the readings that count: all, or one of each beat where the sensor is slower than the rows.
 
     Readings of a slow sensor never change in two successive rows. Those of a coarse one do so by chance.
 
     Args:
-        time: (n,) [s].
         readings: (n,) finite.
 
     Returns:
-        Time and readings, (m,) each.
+        (n,) True for those that count.
     """
-    changes = np.concatenate([[True], np.diff(readings) != 0.0])
-    by_chance = changes.mean() ** 2 * len(changes)
-    in_succession = np.count_nonzero(changes[1:] & changes[:-1])
-    if by_chance >= FEWEST_PAIRS and in_succession < HELD * by_chance:
-        return time[changes], readings[changes]
-    return time, readings
+    changes = np.flatnonzero(np.diff(readings)) + 1
+    share = len(changes) / max(len(readings), 1)
+    by_chance, gaps = share * len(changes), np.diff(changes)
+    if by_chance < FEWEST_PAIRS or np.count_nonzero(gaps == 1) >= HELD * by_chance:
+        return np.ones(len(readings), dtype=np.bool_)
+    beat = int(np.flatnonzero(np.bincount(gaps) >= HELD * len(gaps))[0])
+    return ~repeated_readings(readings, beat)
+
+
+def repeated_readings(readings: Floats, beat: int) -> NDArray[np.bool_]:
+    """Mark the rows that only repeat a reading, beat by beat from each change; before the first change, back from it.
+
+    Args:
+        readings: (n,).
+        beat: rows for which each reading is held. One that is due less than half a beat before a change is that change.
+
+    Returns:
+        (n,) True where nothing was measured.
+    """
+    changes = np.flatnonzero(readings[1:] != readings[:-1]) + 1
+    rows = np.arange(len(readings))
+    before = np.searchsorted(changes, rows, side="right") - 1
+    since = rows - (changes[np.maximum(before, 0)] if changes.size else 0)
+    until = np.append(changes, len(readings) + beat)[before + 1] - rows
+    return np.asarray((since % beat != 0) | (since > 0) & (2 * until <= beat))

@@ -25,12 +25,14 @@ class Table:
         sources: by FlexArm name, the unit, sign and scale of those numbers.
         conditions: known conditions in SI, such as payload [kg].
         lines: for each sample its line in the file, counted from 1; empty where a format has no lines.
+        episodes: for each sample the number of the recording that it is of; empty where a file is one recording.
     """
 
     values: dict[str, NDArray[np.float64]]
     sources: dict[str, Source]
     conditions: dict[str, float] = field(default_factory=dict)
     lines: Sequence[int] = ()
+    episodes: Sequence[int] = ()
 
     def in_si(self, calibration: Mapping[str, float]) -> dict[str, NDArray[np.float64]]:
         """Convert the columns to SI.

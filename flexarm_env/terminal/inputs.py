@@ -13,6 +13,7 @@ from flexarm_env.errors import InputError
 from flexarm_env.recordings.arm_columns import layout_of, stands_alone
 from flexarm_env.recordings.column_maps import load_columns
 from flexarm_env.recordings.columns import CALIBRATED, ColumnMap
+from flexarm_env.recordings.episodes import check_episodes
 from flexarm_env.recordings.files import files_of
 from flexarm_env.recordings.joined import recording_files
 from flexarm_env.recordings.recording import Recording, with_distinct_names
@@ -40,7 +41,8 @@ def read_recordings(arm: Arm, paths: Sequence[Path], columns: Path | None, requi
     else:
         layout = _layout(arm)
         files = _files(paths, layout, require_signal)
-        recordings = with_distinct_names([_read(arm, file, layout, require_signal) for file in files])
+        recordings = with_distinct_names([one for file in files for one in _read(arm, file, layout, require_signal)])
+        check_episodes(len(recordings), layout)
     for recording in recordings:
         _check_fits(arm, recording, require_signal)
     return recordings
@@ -68,11 +70,11 @@ def _files(paths: Sequence[Path], columns: ColumnMap, require_signal: bool) -> l
     return files_of(found)
 
 
-def _read(arm: Arm, file: Path, columns: ColumnMap, require_signal: bool) -> Recording:
-    """Read one file by the arm's column map or by its header."""
+def _read(arm: Arm, file: Path, columns: ColumnMap, require_signal: bool) -> list[Recording]:
+    """Read the recordings in one file by the arm's column map or by its header."""
     layout, note = layout_of(file, columns, require_signal)
-    recording = Recording.read(file, layout, calibration(arm), require_signal)
-    return replace(recording, notes=(*recording.notes, note)) if note else recording
+    recordings = Recording.read_each(file, layout, calibration(arm), require_signal)
+    return [replace(one, notes=(*one.notes, note)) for one in recordings] if note else recordings
 
 
 def calibration(arm: Arm) -> dict[str, float]:

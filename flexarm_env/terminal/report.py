@@ -10,6 +10,7 @@ import flexarm_env
 from flexarm_env.files import write_whole
 from flexarm_env.identify.explain.comparison import Comparison
 from flexarm_env.identify.explain.effect_curve import UNITS, EffectCurve, effect_curve, unexplained_curve
+from flexarm_env.identify.replay.dataset import Dataset, prepare
 from flexarm_env.identify.results import Diagnosis
 from flexarm_env.recordings.recording import Recording
 from flexarm_env.terminal.progress import Progress
@@ -55,7 +56,8 @@ def report(
         report_progress(0.1, "replaying the corrected arm")
         after = flexarm_env.compare(diagnosis.arm, recordings, rate=before.rate)  # the pages draw all arms at the same samples
         report_progress(0.4, "drawing the effects")
-        curves = _curves(diagnosis, recordings)
+        _, dataset = prepare(diagnosis.nominal, recordings, rate=before.rate)
+        curves = _curves(diagnosis, dataset)
         drawn = {curve.effect for curve in curves}
         arms = {e: after.arm.without_effect(e) for e in diagnosis.effects if e not in drawn and e in after.arm.effects}
         without = {effect: flexarm_env.compare(arm, recordings, rate=before.rate) for effect, arm in arms.items()}
@@ -63,9 +65,9 @@ def report(
     return page(Findings(before, recordings, after, diagnosis, curves, without, provenance))
 
 
-def _curves(diagnosis: Diagnosis, recordings: Sequence[Recording]) -> list[EffectCurve]:
+def _curves(diagnosis: Diagnosis, dataset: Dataset) -> list[EffectCurve]:
     """Estimate the curves of accepted effects that act on the hub, and the unexplained torque where more is missing."""
-    found = [effect_curve(diagnosis.nominal, diagnosis.arm, effect, recordings) for effect in diagnosis.effects]
+    found = [effect_curve(diagnosis.nominal, diagnosis.arm, effect, dataset) for effect in diagnosis.effects]
     if diagnosis.verdict in ("partly", "unknown"):
-        found += [unexplained_curve(diagnosis.arm, driver, recordings) for driver in UNITS]
+        found += [unexplained_curve(diagnosis.arm, driver, dataset) for driver in UNITS]
     return [curve for curve in found if curve is not None]

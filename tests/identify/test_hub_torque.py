@@ -11,6 +11,7 @@ from flexarm_env import Arm, Recording
 from flexarm_env.effects import catalogue
 from flexarm_env.identify.explain.effect_curve import driver_of, effect_curve, unexplained_curve
 from flexarm_env.identify.explain.hub_torque import acts_on_hub, hub_torque, law_torque
+from flexarm_env.identify.replay.dataset import prepare
 
 
 def recorded(settings: dict[str, float], experiment: str, seed: int = 3) -> Recording:
@@ -42,7 +43,7 @@ def test_friction_is_found_without_its_law(arm, with_stribeck):
 
 def test_an_effect_s_curve_holds_the_data_against_the_fitted_law(arm, with_stribeck):
     true = arm.with_effect("stribeck", extra=0.15, falloff_speed=0.3)
-    curve = effect_curve(arm, true, "stribeck", with_stribeck)
+    curve = effect_curve(arm, true, "stribeck", prepare(arm, with_stribeck)[1])
     assert (curve.driver, curve.quantity) == ("speed", "friction")
     fast = np.abs(curve.bins) > 0.1
     fitted = np.interp(curve.bins[fast], curve.line, curve.fitted)
@@ -55,23 +56,23 @@ def test_an_effect_s_curve_holds_the_data_against_the_fitted_law(arm, with_strib
 def test_what_depends_on_the_angle_is_shown_against_it(arm):
     recordings = [recorded({"cable": 0.15, "cable0": 0.1}, name) for name in ("square", "sweep")]
     true = arm.with_effect("cable_stiffness", stiffness=0.15, rest_angle=0.1)
-    curve = effect_curve(arm, true, "cable_stiffness", recordings)
+    curve = effect_curve(arm, true, "cable_stiffness", prepare(arm, recordings)[1])
     assert curve.driver == "angle"
     slope, start = np.polyfit(curve.bins, curve.middle, 1)
     assert slope == pytest.approx(-0.15, abs=0.03)
     assert start == pytest.approx(0.15 * 0.1, abs=0.02)
     assert np.allclose(curve.fitted, -0.15 * (curve.line - 0.1))
     assert np.all(curve.given == 0.0)
-    left = unexplained_curve(arm, "angle", recordings)
+    left = unexplained_curve(arm, "angle", prepare(arm, recordings)[1])
     assert np.polyfit(left.bins, left.middle, 1)[0] == pytest.approx(slope, abs=1e-9)
 
 
 def test_what_does_not_act_on_the_hub_has_no_such_curve(arm, with_stribeck):
-    assert effect_curve(arm, arm.with_effect("backlash"), "backlash", with_stribeck) is None
+    assert effect_curve(arm, arm.with_effect("backlash"), "backlash", prepare(arm, with_stribeck)[1]) is None
     still = with_stribeck[0]
     zeros = {name: np.zeros(len(still)) for name in still.signals}
     nothing = Recording.from_arrays("still", still.time, "current", np.zeros(len(still)), zeros)
-    assert unexplained_curve(arm, "speed", [nothing]) is None
+    assert unexplained_curve(arm, "speed", prepare(arm, [nothing])[1]) is None
 
 
 @pytest.mark.parametrize(

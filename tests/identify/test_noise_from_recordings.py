@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from flexarm_env import Arm, InputError, Recording, compare, fit, simulate
+from flexarm_env import Arm, InputError, Recording, compare, fit, inspect_recordings, simulate
 from flexarm_env.controllers.estimator import Estimator
 from flexarm_env.env.setup import Setup
 from flexarm_env.identify.replay.dataset import prepare
@@ -66,6 +67,79 @@ def test_the_noise_of_the_sensors_is_found(name, rate, auto):
         assert found == pytest.approx(reading_noise(arm.sensors[signal]), rel=0.15), signal
         assert reading_noise(reduced.sensors[signal]) == found
     assert all("found in the recordings" in note for note in data.notes[: len(data.signals)])
+
+
+RIGID_BY_VOLTAGE = """
+name = "rigid-voltage"
+[drive]
+input = "voltage"
+resistance = 4.2
+torque_constant = 0.05
+gear_ratio = 20
+motor_inertia = 1e-5
+limit = 12
+[hub]
+inertia = 0.02
+[sensors.arm_angle]
+resolution = "0.0015 rad"
+[sensors.motor_speed]
+noise = "0.4 rad/s"
+"""
+
+
+def inspected_arm(name: str, tmp_path) -> Arm:
+    return saved(tmp_path, RIGID_BY_VOLTAGE) if name == "rigid-voltage" else Arm.load(name)
+
+
+@pytest.mark.parametrize("auto", [True, False])
+@pytest.mark.parametrize("name", ["thesis-fem", "cu-rigid", "cu-flexible", "rigid-voltage"])
+def test_an_inspection_shows_the_noise_that_is_used(tmp_path, name, auto):
+    """A sweep shakes the beam as fast as noise does; the noise is that of the sensor all the same, in every recording."""
+    truth = inspected_arm(name, tmp_path)
+    runs = [simulate(truth, kind, duration=6.0, rate=250.0, seed=4) for kind in ("sweep", "pulse")]
+    arm = unstated(truth) if auto else truth
+    found = {(one.recording, one.signal): one.noise for one in inspect_recordings(arm, runs).signals}
+    assert len(found) == 2 * len(truth.sensors)
+    for (_, signal), noise in found.items():
+        assert noise == pytest.approx(reading_noise(truth.sensors[signal]), rel=0.15), signal
+    if auto:
+        _, data = prepare(arm, runs)
+        assert {signal: found["sweep", signal] for signal in data.signals} == dict(zip(data.signals, data.noise, strict=True))
+
+
+@pytest.mark.parametrize("name", ["thesis-fem", "cu-rigid", "cu-flexible", "rigid-voltage"])
+def test_an_inspection_shows_the_noise_at_rest(tmp_path, name):
+    """Where a coarse reading stands on one step, no reading shows the rounding: the noise is not made up."""
+    truth = inspected_arm(name, tmp_path)
+    time = np.arange(0.0, 6.0, 0.004)
+    rest = Recording.from_arrays("rest", time, truth.input, np.zeros_like(time), {"arm_angle": np.zeros_like(time)})
+    run = simulate(truth, rest, seed=4)
+    found = {one.signal: one.noise for one in inspect_recordings(unstated(truth), [run]).signals}
+    shows = [s for s in truth.sensors if truth.sensors[s]["noise"] > 0.5 * truth.sensors[s]["resolution"]]
+    for signal in shows:
+        assert found[signal] == pytest.approx(reading_noise(truth.sensors[signal]), rel=0.15), signal
+    for signal in set(truth.sensors) - set(shows):
+        assert not found[signal]
+
+
+@pytest.mark.parametrize("rows", [2, 3, 10])
+@pytest.mark.parametrize(
+    ("name", "signal", "rate"),
+    [("thesis-fem", "strain_base", 500.0), ("thesis", "motor_speed", 500.0), ("cu-flexible", "tip_deflection", 250.0)],
+)
+def test_a_slow_sensor_has_the_noise_of_its_readings(name, signal, rate, rows):
+    truth = Arm.load(name)
+    runs = [simulate(truth, kind, duration=6.0, rate=rate, seed=4) for kind in ("pulse", "square")]
+    slow = []
+    for run in runs:
+        values = run.signals[signal]
+        slow.append(replace(run, signals=run.signals | {signal: values[np.arange(len(values)) // rows * rows]}))
+    noise = reading_noise(truth.sensors[signal])
+    assert not [note for note in prepare(truth, slow)[1].notes if "noise" in note]
+    data = prepare(unstated(truth), slow)[1]
+    assert data.noise[data.signals.index(signal)] == pytest.approx(noise, rel=0.15)
+    shown = [one.noise for one in inspect_recordings(truth, slow).signals if one.signal == signal]
+    assert shown == pytest.approx([noise, noise], rel=0.15)
 
 
 def test_a_stated_step_counts_where_the_recordings_do_not_show_it():

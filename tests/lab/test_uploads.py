@@ -25,7 +25,7 @@ def content(arm, tmp_path_factory) -> bytes:
 
 
 def test_an_upload_is_read_like_a_file(arm, content):
-    found = read_upload(arm, "C:\\data\\run 1.csv", content, None, [])
+    (found,) = read_upload(arm, "C:\\data\\run 1.csv", content, None, [])
     assert found.name == "run 1"
     assert found.source == "run 1.csv"
     expected = simulate(arm, "pulse", duration=0.5, rate=200.0)
@@ -53,7 +53,7 @@ def test_a_bad_upload_gets_the_reader_s_own_line(arm, content, words):
 
 
 def test_uploads_are_bounded(arm, content, monkeypatch):
-    one = read_upload(arm, "run.csv", content, None, [])
+    (one,) = read_upload(arm, "run.csv", content, None, [])
     with pytest.raises(InputError, match="'run' is here already"):
         read_upload(arm, "run.csv", content, None, [one])
     with pytest.raises(InputError, match="12 recordings are here already"):

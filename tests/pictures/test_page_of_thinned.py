@@ -10,7 +10,7 @@ from flexarm_env.terminal.report import report
 pytest.importorskip("plotly")
 
 
-def test_every_arm_is_replayed_at_the_kept_samples():
+def test_every_arm_is_replayed_and_every_curve_estimated_at_the_kept_samples(monkeypatch):
     arm = Arm.load("cu-rigid")
     run = simulate(arm.with_effect("constant_torque", torque=0.02), "square", duration=3.0, rate=1000.0, seed=1, name="run")
     before = compare(arm, [run], rate=200.0)
@@ -20,3 +20,7 @@ def test_every_arm_is_replayed_at_the_kept_samples():
     found = diagnose(arm, [run], rate=200.0, jobs=1)
     assert found.effects == ["constant_torque"]
     assert "constant_torque" in report([run], before, found, {})
+    curves = []
+    monkeypatch.setattr("flexarm_env.terminal.report.effect_curve", lambda *arguments: curves.append(arguments[-1]))
+    report([run], before, found, {})
+    assert [(data.interval, len(data.runs[0].time)) for data in curves] == [(pytest.approx(0.005), len(run) / 5)]

@@ -54,9 +54,9 @@ BAD = {
     "decimal commas": (f"{HEADER}\n0,0,1,0,0,5\n", ["row 2", "6 cells", "'0,0,1,0,0,5'", "Export with decimal points"]),
     "semicolons": (GOOD.replace(",", ";"), ["semicolons", "delimiter = ';'"]),
     "tabs": (GOOD.replace(",", "\t"), ["tabs", "delimiter"]),
-    "empty cell": (GOOD.replace("2,0.6", ",0.6"), ["row 3", "'current'", "empty"]),
-    "nan command": (GOOD.replace("2,0.6", "nan,0.6"), ["row 3", "'current'", "nan", "only a signal may be absent"]),
-    "no command": (GOOD.replace("2,0.6", "NA,0.6"), ["row 3", "'current'", "'NA' is not a number"]),
+    "empty time": (GOOD.replace("0.1,2", ",2"), ["row 3", "'time'", "empty"]),
+    "command too late": (GOOD.replace("1,0.5", ",0.5"), ["row 2", "'current'", "empty", "first command stands in row 3"]),
+    "no command": (f"{HEADER}\n0,,1\n1,,2\n", ["row 2", "column 'current'", "no command in any row"]),
     "no reading at all": (f"{HEADER}\n0,1,\n1,1,nan\n", ["column 'arm_angle'", "no reading in any row"]),
     "empty reference": (
         GOOD.replace("[rad]\n", "[rad],reference [rad]\n").replace("0.6", "0.6,").replace("0.5", "0.5,1").replace("0.7", "0.7,1"),

@@ -44,6 +44,23 @@ def test_a_cell_of_a_signal_may_be_empty(tmp_path: Path, cell: str) -> None:
     assert "arm_angle (66.7 % measured)" in repr(recording)
 
 
+@pytest.mark.parametrize("cell", ["", " ", "\t", "NaN", "nan", "NA", " NA ", '""'])
+def test_an_empty_cell_of_the_command_holds_the_last_one(tmp_path: Path, cell: str) -> None:
+    """As a drive does; some logs have a row for each message of any sensor."""
+    recording = Recording.read(save(tmp_path, GOOD.replace("2,0.6", f"{cell},0.6")))
+    assert recording.command.tolist() == [1, 1, 3]
+    assert recording.signals["arm_angle"].tolist() == [0.5, 0.6, 0.7]
+    assert recording.notes == ("'current' stands in 2 of 3 rows; in the others the last command holds",)
+    recording.write(tmp_path / "again.csv")
+    again = Recording.read(tmp_path / "again.csv")
+    assert (again.command.tolist(), again.notes) == ([1, 1, 3], ())
+
+
+def test_arrays_have_a_command_for_every_sample() -> None:
+    with pytest.raises(InputError, match="sample 2, column 'current': is nan"):
+        Recording.from_arrays("run", [0, 1, 2], "current", [1, np.nan, 2], {"arm_angle": [0, 1, 2]})
+
+
 @pytest.mark.parametrize(("delimiter", "decimal"), [(";", ","), ("\t", "."), (" ", ".")])
 def test_so_may_those_of_other_tables(tmp_path: Path, delimiter: str, decimal: str) -> None:
     rows = [["0", "1.5", "2.5"], ["1", "1.5", "NA" if delimiter == " " else ""], ["2", "1.5", "nan"]]
@@ -118,10 +135,10 @@ def test_of_held_readings_the_first_counts(held: np.ndarray, times: int, phase: 
     assert np.array_equal(found, expected, equal_nan=True)
 
 
-def test_a_held_reading_that_comes_late_counts_from_its_change() -> None:
-    values = np.array([1.0] * 5 + [2.0] * 6 + [3.0] * 4 + [4.0] * 5)
-    found = Corrections(repeats=5).apply(np.arange(20), values)
-    assert np.flatnonzero(~np.isnan(found)).tolist() == [0, 5, 10, 11, 15]
+def test_a_held_reading_that_comes_late_counts_from_its_change_and_once() -> None:
+    values = np.array([1.0] * 5 + [2.0] * 6 + [3.0] * 4 + [4.0] * 10)
+    found = Corrections(repeats=5).apply(np.arange(25), values)
+    assert np.flatnonzero(~np.isnan(found)).tolist() == [0, 5, 11, 15, 20]
 
 
 @given(

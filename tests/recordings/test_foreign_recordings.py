@@ -40,7 +40,12 @@ def test_reads_matlab_vectors(tmp_path: Path) -> None:
         ("qm", {"a": 1}, "not a vector"),
         ("qm", np.ones((0, 0)), "not a vector"),
         ("qm", np.ones(3), "differ in length"),
-        ("vir", np.array([0, 1, np.nan, 3]), "sample 3, column 'voltage': is nan"),
+        (
+            "vir",
+            np.array([np.nan, np.nan, 2, 3]),
+            "sample 1, column 'voltage': is empty, and the first command stands in",
+        ),
+        ("vir", np.array([0, 1, np.inf, 3]), "sample 3, column 'voltage': is inf"),
         ("qm", np.array([0, 1, np.inf, 3]), "sample 3, column 'arm_angle': is inf"),
         ("t", np.array([0, 1, 1, 3]), "sample 3, column 'time': repeats"),
     ],

@@ -96,7 +96,7 @@ def test_its_faults_are_those_of_any_other(npz):
 
 def test_the_lab_and_the_messages_follow(npz, tmp_path):
     arm = Arm.load(npz.parent / "A.toml")
-    found = read_upload(arm, "two.npz", (npz / "two.npz").read_bytes(), None, [])
+    (found,) = read_upload(arm, "two.npz", (npz / "two.npz").read_bytes(), None, [])
     assert (found.source, len(found)) == ("two.npz", 60)
     assert catalogue.suffixes() == [".csv", ".dat", ".db3", ".json", ".lvm", ".mat", ".mcap", ".npz", ".parquet", ".txt"]
     (tmp_path / "none").mkdir()

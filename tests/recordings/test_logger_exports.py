@@ -191,3 +191,33 @@ def test_mcap_with_json(tmp_path: Path) -> None:
     writer.finish()
     path = save(tmp_path, file.getvalue(), "run.mcap")
     assert is_right(Recording.read(path, named("variable", "log_time", "/cmd.u", "/encoder.position[0]")))
+
+
+def test_messages_of_several_topics_in_one_table(tmp_path: Path) -> None:
+    """A row for each message: the cells of the other topics are empty."""
+    rows = "__time,/motor/command/data,/joint_states/hub/position\n"
+    stamp = 1_700_000_000.0
+    for k, (time, volts, angle) in enumerate(ROWS):
+        rows += f"{stamp + time:.6f},{volts},{angle if k == 0 else ''}\n"
+        rows += f"{stamp + time + 0.004:.6f},,{angle}\n" if k else ""
+    columns = named("column", "__time", "/motor/command/data", "/joint_states/hub/position")
+    recording = Recording.read(save(tmp_path, rows), columns)
+    assert np.allclose(recording.command, np.repeat(VOLTS, 2)[1:])
+    measured = ~np.isnan(recording.signals["arm_angle"])
+    assert np.allclose(recording.signals["arm_angle"][measured], ANGLES)
+    assert "'voltage' stands in 6 of 11 rows; in the others the last command holds" in recording.notes
+
+
+def test_times_of_day_go_on_past_midnight(tmp_path: Path) -> None:
+    times = [f"23:59:59.{97 + k}0" if k < 3 else f"00:00:00.{k - 3:02d}" for k in range(6)]
+    path = save(tmp_path, "time,u,q\n" + lines(",", times=times))
+    assert is_right(Recording.read(path, named("column", "time", "u", "q")))
+    for cell, words in (("12:61:00", "row 4, column 'time': '12:61:00' is no time of day"), ("0.02", "'0.02' is no time of day")):
+        wrong = save(tmp_path, "time,u,q\n" + lines(",", times=[*times[:2], cell, *times[3:]]))
+        assert words in refusal(wrong, columns=named("column", "time", "u", "q"))
+
+
+@pytest.mark.parametrize("stamp", ["05/12/2024 23:59:{:02d}.5", "5.12.24 10:00:{:02d}", "05-12-2024 10:00:{:02d}"])
+def test_dates_that_may_be_read_two_ways_are_refused(tmp_path: Path, stamp: str) -> None:
+    path = save(tmp_path, "time,u,q\n" + lines(",", times=[stamp.format(k).replace(",", ".") for k in range(6)]))
+    assert "is a date whose day and month may be read two ways" in refusal(path, columns=named("column", "time", "u", "q"))

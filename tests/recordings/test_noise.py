@@ -60,21 +60,28 @@ def test_noise_in_uneven_samples_with_gaps_spikes_and_missing_ones():
     assert estimated(time, values).total == pytest.approx(SIGMA, rel=0.1)
 
 
-def test_readings_of_a_slow_sensor_are_taken_once():
-    time = np.arange(0.0, 20.0, 0.002)
-    slow = time[::10]
-    values = np.sin(slow) + np.random.default_rng(5).normal(0.0, SIGMA, len(slow))
-    held = np.repeat(values, 10)
-    once, distinct = distinct_readings(time, held)
-    assert np.array_equal(once, slow)
-    assert np.array_equal(distinct, values)
-    assert estimated(time, held).total == pytest.approx(SIGMA, rel=0.15)
+@pytest.mark.parametrize("rows", [2.0, 3.0, 10.0, 10.0 / 3.0])
+@pytest.mark.parametrize("step", [0.0, 2.0 * SIGMA])
+def test_readings_of_a_slow_sensor_are_taken_once(rows, step):
+    time = np.arange(0.0, 40.0, 0.002)
+    first = np.unique(np.ceil(np.arange(0.0, len(time), rows)).astype(int))
+    first = first[first < len(time)]
+    values = np.sin(time[first]) + np.random.default_rng(5).normal(0.0, SIGMA, len(first))
+    if step:
+        values = step * np.round(values / step)
+    held = values[np.searchsorted(first, np.arange(len(time)), side="right") - 1]
+    rows_that_count = np.flatnonzero(distinct_readings(held))
+    late = 2 if rows % 1.0 else 0  # the row of a coarse reading that did not change is known to some
+    assert np.abs(rows_that_count[:, None] - first).min(axis=1).max() <= late
+    assert len(rows_that_count) == pytest.approx(len(first), rel=0.02)
+    assert estimated(time, held).total == pytest.approx(np.hypot(SIGMA, step / 12**0.5), rel=0.15)
 
 
-def test_a_coarse_sensor_is_not_taken_for_a_slow_one():
+@pytest.mark.parametrize("share", [0.4, 0.02])
+def test_a_coarse_sensor_is_not_taken_for_a_slow_one(share):
     time = np.arange(0.0, 10.0, 0.002)
-    values = np.round(np.random.default_rng(2).normal(0.3, 0.4, len(time)))
-    assert len(distinct_readings(time, values)[0]) == len(time)
+    values = np.round(np.random.default_rng(2).normal(0.3, share, len(time)))
+    assert distinct_readings(values).all()
 
 
 def test_noise_that_is_larger_in_motion_is_given_for_both():

@@ -135,16 +135,6 @@ def test_parquet_by_a_map_with_lists_and_timestamps(tmp_path: Path) -> None:
         assert words in refusal(path, columns={**table, "current": {"column": place, "unit": "A"}})
 
 
-def test_episodes_of_one_file_are_as_many_recordings(tmp_path: Path) -> None:
-    path = parquet(tmp_path / "run.parquet", t=TIMES, i=TIMES, phi=TIMES, episode_index=np.arange(N) // 4)
-    table = {
-        "time": {"column": "t", "unit": "s"},
-        "current": {"column": "i", "unit": "A"},
-        "arm_angle": {"column": "phi", "unit": "rad"},
-    }
-    assert "has 2 episodes in 'episode_index'" in refusal(path, columns=table)
-
-
 def mcap(path: Path, compression: str = "ZSTD", effort: bool = True) -> Path:
     """Joint states at 50 Hz, and a command 5 ms later at 100 Hz."""
     pytest.importorskip("mcap_ros2")

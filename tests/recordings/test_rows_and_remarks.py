@@ -117,7 +117,7 @@ def test_a_row_of_tabs_is_empty_cells_where_tabs_part_them(tmp_path: Path) -> No
         (GOOD.replace("0.6", '"2,000"'), "'2,000' has a comma, which may mark thousands or decimals; export"),
         (GOOD.replace("0.6", '"-1,234,567"'), "'-1,234,567' has a comma, which may"),
         (GOOD.replace("0.6", '"0,600"'), "'0,600' has a decimal comma; say decimal = ','"),
-        (GOOD.replace("2,0.6", ",0.6"), "row 3, column 'current': is empty; a replay needs time, command and reference"),
+        (GOOD.replace("1,0.5", ",0.5"), "row 2, column 'current': is empty, and the first command stands in row 3"),
     ],
 )
 def test_what_to_do_is_no_advice_that_spoils(tmp_path: Path, text: str, words: str) -> None:

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.explain.hub_torque import HubMotion, acts_on_hub, arguments, changes, hub_torque, law_torque
-from flexarm_env.identify.settings import SETTINGS, Explaining
-from flexarm_env.recordings.recording import Recording
+from flexarm_env.identify.explain.hub_torque import HubMotion, acts_on_hub, arguments, changes, hub_torque_of, law_torque
+from flexarm_env.identify.replay.build_run import with_sensors
+from flexarm_env.identify.replay.dataset import Dataset
+from flexarm_env.identify.settings import Explaining
 
 Floats = NDArray[np.float64]
 
@@ -51,7 +52,7 @@ class EffectCurve:
     given: Floats
 
 
-def effect_curve(nominal: Arm, corrected: Arm, effect: str, recordings: Sequence[Recording]) -> EffectCurve | None:
+def effect_curve(nominal: Arm, corrected: Arm, effect: str, dataset: Dataset) -> EffectCurve | None:
     """Estimate the curve of an effect that acts on the hub; None for others, and where too little moves.
 
     An effect that depends on speed is shown as the whole friction. Any other is shown as its own share, without the other effects
@@ -61,7 +62,7 @@ def effect_curve(nominal: Arm, corrected: Arm, effect: str, recordings: Sequence
         nominal: the arm as it came.
         corrected: the arm with the effect.
         effect: its name.
-        recordings: of the machine.
+        dataset: the recordings, at the samples that were kept of them.
     """
     if effect not in corrected.effects or not acts_on_hub(corrected, effect):
         return None
@@ -69,13 +70,13 @@ def effect_curve(nominal: Arm, corrected: Arm, effect: str, recordings: Sequence
     names = [name for name in corrected.effects if acts_on_hub(corrected, name)]
     shown = [name for name in names if driver_of(corrected, name) == "speed"] if driver == "speed" else [effect]
     rest = [name for name in names if name not in shown]
-    return _curve(nominal, corrected, effect, driver, shown, rest, recordings)
+    return _curve(nominal, corrected, effect, driver, shown, rest, dataset)
 
 
-def unexplained_curve(arm: Arm, driver: str, recordings: Sequence[Recording]) -> EffectCurve | None:
+def unexplained_curve(arm: Arm, driver: str, dataset: Dataset) -> EffectCurve | None:
     """Estimate the torque on the hub that an arm does not explain, against a driver; None where too little moves."""
     names = [name for name in arm.effects if acts_on_hub(arm, name)]
-    return _curve(arm, arm, "", driver, [], names, recordings)
+    return _curve(arm, arm, "", driver, [], names, dataset)
 
 
 def driver_of(arm: Arm, name: str) -> str:
@@ -94,11 +95,11 @@ def _curve(
     driver: str,
     shown: Sequence[str],
     rest: Sequence[str],
-    recordings: Sequence[Recording],
+    dataset: Dataset,
 ) -> EffectCurve | None:
-    numbers = SETTINGS.explaining
+    numbers = dataset.settings.explaining
     try:
-        motion = _moving(hub_torque(corrected, recordings), numbers)
+        motion = _moving(hub_torque_of(with_sensors(corrected, dataset.signals), dataset), numbers)
     except np.linalg.LinAlgError:  # no steady filter: the sensors do not see the hub
         return None
     if motion is None:

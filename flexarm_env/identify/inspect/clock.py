@@ -6,6 +6,7 @@ import numpy as np
 
 from flexarm_env.identify.inspect.evidence import Evidence
 from flexarm_env.identify.inspect.fault import Fault
+from flexarm_env.identify.inspect.hub_lag import hub_lag
 from flexarm_env.identify.inspect.report import fault
 from flexarm_env.identify.inspect.series import HUB
 
@@ -24,7 +25,12 @@ def late_signals(evidence: Evidence) -> list[Fault]:
 
 def _hub_out_of_step(evidence: Evidence) -> list[Fault]:
     """Find a lag between angle and speed, and blame the one that is less like the model."""
-    if evidence.hub is None or evidence.hub_in_step:
+    if evidence.hub is None:
+        return []
+    small = hub_lag(evidence.recording, evidence.gear_ratio, evidence.numbers)
+    if small.lag:
+        return [clock_fault(evidence, HUB[0], small.lag, HUB[1])]
+    if evidence.hub_in_step:
         return []
     numbers, found = evidence.numbers, evidence.run.hub_late(evidence.gear_ratio)
     if found.share < numbers.alike or abs(found.lag) < numbers.least_lag or not found.is_within(numbers.least_factor):
@@ -62,8 +68,10 @@ def _others_are_in_time(evidence: Evidence, signal: str) -> bool:
     return any(other.share > numbers.similar and abs(other.lag) < numbers.same_lag for other in beside)
 
 
-def clock_fault(evidence: Evidence, signal: str, lag: float) -> Fault:
-    """Describe the lag [s] of a signal, or of all."""
+def clock_fault(evidence: Evidence, signal: str, lag: float, other: str = "") -> Fault:
+    """Describe the lag [s] of a signal against another, else against the model, or of all signals."""
     time, late = f"{abs(lag):.3g} s", "late" if lag > 0.0 else "early"
-    text = f"is {time} {late} against the model's" if signal else f"all signals are {time} {late} against the command"
-    return fault(evidence.recording, signal, "clock", lag, text, f'{signal or "time"} = {{ shift = "{lag:.3g} s" }}')
+    against = other or "the model's"
+    text = f"is {time} {late} against {against}" if signal else f"all signals are {time} {late} against the command"
+    hint = f'{signal or "time"} = {{ shift = "{lag:.3g} s" }}'
+    return fault(evidence.recording, signal, "clock", lag, text, hint, other=other)

@@ -8,6 +8,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.agreement import Agreement
 from flexarm_env.identify.inspect.free_run import FreeRun, Replayer, Table, replayer
 from flexarm_env.identify.inspect.series import HUB
+from flexarm_env.identify.replay.reading_noise import NoiseBySignal
 from flexarm_env.identify.settings import MotionFaults, Settings
 from flexarm_env.recordings.recording import Recording
 
@@ -76,13 +77,19 @@ class Evidence:
         return [found for other, found in self.at_once.items() if other != signal]
 
 
-def gather(arm: Arm, recording: Recording, settings: Settings) -> Evidence:
+def gather(arm: Arm, recording: Recording, settings: Settings, noises: NoiseBySignal | None = None) -> Evidence:
     """Gather the evidence on a recording.
+
+    Args:
+        arm: the model.
+        recording: of the machine.
+        settings: numbers of the method.
+        noises: of the arm's sensors, where they were settled before.
 
     Raises:
         InputError: for a recording that does not fit the arm.
     """
-    prepared = replayer(arm, recording, settings)
+    prepared = replayer(arm, recording, settings, noises)
     run = prepared.free_run()
     both = set(HUB) <= set(run.signals)
     hub = run.hub(arm.constants["drive"]["gear_ratio"]) if both else None

@@ -13,6 +13,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.agreement import Agreement, agreement, agreement_late
 from flexarm_env.identify.replay.dataset import Dataset, prepare
 from flexarm_env.identify.replay.initial_state import Start, find_start
+from flexarm_env.identify.replay.reading_noise import NoiseBySignal
 from flexarm_env.identify.replay.replay import replay
 from flexarm_env.identify.settings import MotionFaults, Settings
 from flexarm_env.plant.plant import Plant
@@ -114,13 +115,19 @@ class Replayer:
         return FreeRun(dataset.signals, cell, measured, means, integrals, noise, numbers)
 
 
-def replayer(arm: Arm, recording: Recording, settings: Settings) -> Replayer:
+def replayer(arm: Arm, recording: Recording, settings: Settings, noises: NoiseBySignal | None = None) -> Replayer:
     """Prepare a recording for free runs of an arm, from the initial state with which the signals agree best.
+
+    Args:
+        arm: the model.
+        recording: of the machine.
+        settings: numbers of the method.
+        noises: of the arm's sensors, where they were settled before.
 
     Raises:
         InputError: for a recording that does not fit the arm.
     """
-    reduced, dataset = prepare(arm, [recording], settings)
+    reduced, dataset = prepare(arm, [recording], settings, noises=noises)
     (plant,) = dataset.plants(reduced).values()
     tried = [Replayer(reduced, plant, started, dataset.noise) for started in _starts(dataset)]
     return max(tried, key=_agreed) if len(tried) > 1 else tried[0]

@@ -54,6 +54,8 @@ def _jumps(series: Series, time: Floats, is_angle: bool, numbers: Inspecting) ->
     steps = np.diff(time)
     least = max(numbers.jump * rest, numbers.jump_noise * series.noise, numbers.wild_steps * series.step)
     for place in largest:
+        if place + 1 < length:  # so few readings are no run
+            continue
         before, after = series.values[max(place - length + 1, 0) : place + 1], series.values[place + 1 : place + 1 + length]
         stays = abs(float(np.median(after)) - float(np.median(before))) > numbers.stays * changes[place]
         if changes[place] > least and stays:

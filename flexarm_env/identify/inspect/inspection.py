@@ -4,44 +4,19 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-
-import numpy as np
+from dataclasses import dataclass, field, replace
 
 from flexarm_env.arm import Arm
+from flexarm_env.identify.inspect.both import with_common_lines
 from flexarm_env.identify.inspect.catalogue import CHECKS
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.mend import mended
 from flexarm_env.identify.inspect.motion import motion_faults, moves_as_model
 from flexarm_env.identify.inspect.series import Inspected
+from flexarm_env.identify.inspect.signal_facts import SignalFacts, sensor_noise, signal_facts
+from flexarm_env.identify.replay.reading_noise import NoiseBySignal
 from flexarm_env.identify.settings import SETTINGS, Settings
-from flexarm_env.recordings.columns import UNITS
 from flexarm_env.recordings.recording import Recording
-
-
-@dataclass(frozen=True)
-class SignalFacts:
-    """One signal of one recording, as it was read.
-
-    Attributes:
-        recording: its name.
-        signal: its name.
-        unit: SI.
-        low: smallest reading.
-        high: largest reading.
-        samples: how many readings there are.
-        step: resolution of the readings; 0 where none shows.
-        noise: standard deviation of a reading, of noise and rounding; None where the readings show none.
-    """
-
-    recording: str
-    signal: str
-    unit: str
-    low: float
-    high: float
-    samples: int
-    step: float
-    noise: float | None
 
 
 @dataclass(frozen=True)
@@ -53,12 +28,14 @@ class Inspection:
         signals: facts on every signal of every recording.
         mended: the recordings with the faults of their readings undone, or left out as NaN.
         seconds: time taken.
+        noises: of the arm's sensors, by all recordings.
     """
 
     faults: tuple[Fault, ...]
     signals: tuple[SignalFacts, ...]
     mended: tuple[Recording, ...]
     seconds: float
+    noises: NoiseBySignal = field(default_factory=dict)
 
     @property
     def notes(self) -> list[str]:
@@ -92,19 +69,24 @@ def inspect_recordings(arm: Arm, recordings: Sequence[Recording], settings: Sett
     began = time.perf_counter()
     faults: list[Fault] = []
     sound: list[Recording] = []
-    facts: list[SignalFacts] = []
     for recording in recordings:
         inspected = Inspected.of(recording)
         found, left = reading_faults(arm, inspected, settings)
         faults += found
         sound.append(left)
-        facts += [_facts(inspected, signal) for signal in recording.signals]
-    faults = with_motion_faults(arm, recordings, sound, faults, settings)
-    return Inspection(tuple(faults), tuple(facts), tuple(sound), time.perf_counter() - began)
+    noises = sensor_noise(arm, recordings, sound, settings)
+    faults = with_common_lines(with_motion_faults(arm, recordings, sound, faults, noises, settings))
+    facts = signal_facts(recordings, sound, noises, settings)
+    return Inspection(tuple(faults), facts, tuple(sound), time.perf_counter() - began, noises)
 
 
 def with_motion_faults(
-    arm: Arm, recordings: Sequence[Recording], sound: Sequence[Recording], faults: list[Fault], settings: Settings
+    arm: Arm,
+    recordings: Sequence[Recording],
+    sound: Sequence[Recording],
+    faults: list[Fault],
+    noises: NoiseBySignal,
+    settings: Settings,
 ) -> list[Fault]:
     """Add the faults that the motion shows. Commands beyond the limit are in another unit where that explains the motion.
 
@@ -113,15 +95,16 @@ def with_motion_faults(
         recordings: as read.
         sound: the same with the faults of their readings mended.
         faults: of their readings.
+        noises: of the arm's sensors.
         settings: numbers of the method.
     """
-    if any(one.kind == "limit" for one in faults) and not moves_as_model(arm, sound, settings):
+    if any(one.kind == "limit" for one in faults) and not moves_as_model(arm, sound, settings, noises):
         others = [one for one in faults if one.kind != "limit"]
         as_read = [replace(left, command=one.command[: len(left)]) for left, one in zip(sound, recordings, strict=True)]
-        found = motion_faults(arm, as_read, settings)
+        found = motion_faults(arm, as_read, settings, noises)
         if any(one.kind == "factor" and one.signal == arm.input for one in found):
             return others + found
-    return faults + motion_faults(arm, sound, settings)
+    return faults + motion_faults(arm, sound, settings, noises)
 
 
 def reading_faults(arm: Arm, inspected: Inspected, settings: Settings = SETTINGS) -> tuple[list[Fault], Recording]:
@@ -133,11 +116,3 @@ def reading_faults(arm: Arm, inspected: Inspected, settings: Settings = SETTINGS
         faults += found
         inspected = replace(inspected, recording=mended(inspected.recording, found))
     return faults, inspected.recording
-
-
-def _facts(inspected: Inspected, signal: str) -> SignalFacts:
-    recording, found = inspected.recording, inspected.noise[signal]
-    values = recording.signals[signal][np.isfinite(recording.signals[signal])]
-    low, high = (float(f(values)) if len(values) else float("nan") for f in (np.min, np.max))
-    step, noise = (found.resolution, found.total) if found else (0.0, None)
-    return SignalFacts(recording.name, signal, UNITS[signal], low, high, len(values), step, noise)

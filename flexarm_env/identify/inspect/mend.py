@@ -10,6 +10,7 @@ import numpy as np
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.series import Floats
 from flexarm_env.recordings.recording import Recording
+from flexarm_env.recordings.resolution import repeated_readings
 
 
 def mended(recording: Recording, faults: Iterable[Fault]) -> Recording:
@@ -33,9 +34,9 @@ def mended(recording: Recording, faults: Iterable[Fault]) -> Recording:
             signals[one.signal] = unwrapped(signals[one.signal], np.array(one.rows), one.value)
         elif one.kind in ("spike", "dropout", "rail"):
             signals[one.signal] = without(signals[one.signal], np.array(one.rows))
-        elif one.kind == "held":
+        elif one.kind == "held" and one.value is not None:
             values = signals[one.signal]
-            signals[one.signal] = without(values, np.flatnonzero(np.r_[False, np.diff(values) == 0.0]))
+            signals[one.signal] = without(values, np.flatnonzero(repeated_readings(values, round(one.value))))
     left = replace(recording, signals=signals, command=command)
     return left if end is None else left.part(0.0, end)
 

@@ -13,6 +13,7 @@ from flexarm_env.identify.inspect.in_common import in_common
 from flexarm_env.identify.inspect.sign import signs
 from flexarm_env.identify.inspect.sized import sized
 from flexarm_env.identify.inspect.swap import exchanged_signals
+from flexarm_env.identify.replay.reading_noise import NoiseBySignal
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.recordings.recording import Recording
 
@@ -20,7 +21,9 @@ from flexarm_env.recordings.recording import Recording
 MOTION_CHECKS: tuple[Callable[[Evidence], list[Fault]], ...] = (exchanged_signals, late_signals, signs, factors)
 
 
-def motion_faults(arm: Arm, recordings: Sequence[Recording], settings: Settings = SETTINGS) -> list[Fault]:
+def motion_faults(
+    arm: Arm, recordings: Sequence[Recording], settings: Settings = SETTINGS, noises: NoiseBySignal | None = None
+) -> list[Fault]:
     """Find faults of signals and of the command that the model's motion shows, before anything is calibrated.
 
     One free run of the model is compared with every signal in windows of a second, each with an offset and a drift of its own:
@@ -31,6 +34,7 @@ def motion_faults(arm: Arm, recordings: Sequence[Recording], settings: Settings 
         arm: the model.
         recordings: of the machine.
         settings: numbers of the method.
+        noises: of the arm's sensors, where they were settled before.
 
     Returns:
         The faults of each recording, in the order of the recordings. A fault of the column map comes once for each.
@@ -48,12 +52,14 @@ def motion_faults(arm: Arm, recordings: Sequence[Recording], settings: Settings 
         ['strain_base']
     """
     with_signals = [one for one in recordings if set(one.signals) & set(arm.signals)]  # else the readings of all were at fault
-    evidence = [gather(arm, recording, settings) for recording in with_signals]
+    evidence = [gather(arm, recording, settings, noises) for recording in with_signals]
     found: list[list[Fault]] = [next((faults for check in MOTION_CHECKS if (faults := check(one))), []) for one in evidence]
     return sized(evidence, in_common(evidence, found))
 
 
-def moves_as_model(arm: Arm, recordings: Sequence[Recording], settings: Settings = SETTINGS) -> bool:
+def moves_as_model(
+    arm: Arm, recordings: Sequence[Recording], settings: Settings = SETTINGS, noises: NoiseBySignal | None = None
+) -> bool:
     """Whether the model moves as the machine does in every recording."""
     with_signals = [one for one in recordings if set(one.signals) & set(arm.signals)]
-    return all(gather(arm, recording, settings).model_holds for recording in with_signals)
+    return all(gather(arm, recording, settings, noises).model_holds for recording in with_signals)

@@ -9,8 +9,9 @@ from typing import Any
 from flexarm_env.arm import Arm
 from flexarm_env.identify.inspect.estimate_excitation import excitation_of
 from flexarm_env.identify.inspect.excitation import Excitation
-from flexarm_env.identify.inspect.inspection import Inspection, SignalFacts, inspect_recordings
+from flexarm_env.identify.inspect.inspection import Inspection, inspect_recordings
 from flexarm_env.identify.inspect.restart import restart
+from flexarm_env.identify.inspect.signal_facts import SignalFacts
 from flexarm_env.identify.progress import Progress, ProgressCallback
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.preflight import preflight
@@ -85,7 +86,7 @@ def overview(
     signals, limits = Progress.to(progress).split(1, 19)
     signals.at(0.0, "signals")
     inspection = inspect_recordings(arm, recordings, settings) if inspection is None else inspection
-    reduced, dataset = prepare(arm, recordings, settings)
+    reduced, dataset = prepare(arm, recordings, settings, noises=inspection.noises)
     notes, _ = preflight(dataset)
     return Overview(arm, tuple(recordings), inspection, excitation_of(reduced, dataset, limits), tuple(notes))
 

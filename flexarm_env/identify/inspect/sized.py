@@ -39,7 +39,7 @@ def _key(fault: Fault) -> tuple[str, str, str]:
 def _is_biased(evidence: Evidence, fault: Fault) -> bool:
     """Whether wrong constants would bias the size of a fault, and the model is near enough to estimate them beside it."""
     if fault.kind == "clock":
-        return True
+        return not fault.other
     is_factor = fault.kind == "factor" and not fault.other and fault.signal in evidence.signals
     return is_factor and evidence.model_holds and not is_relative(evidence, fault.signal)
 

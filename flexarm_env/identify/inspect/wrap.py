@@ -14,6 +14,8 @@ from flexarm_env.identify.settings import Inspecting
 from flexarm_env.recordings.columns import UNITS
 
 _TURN = 2 * math.pi
+#: Moduli of angles in degrees and of counters.
+_USUAL = (math.degrees(_TURN), *(2.0**bits for bits in (8, 10, 12, 14, 16, 20, 24, 32)))
 
 
 def wrap(inspected: Inspected, arm: Arm, numbers: Inspecting) -> list[Fault]:
@@ -59,8 +61,15 @@ def wraps(series: Series, is_angle: bool, numbers: Inspecting) -> tuple[Integers
     is_turn = is_angle and abs(modulus - _TURN) < max(numbers.same_turn * _TURN, 2 * usual)
     if is_turn and abs(modulus - _TURN) < numbers.same_jump * _TURN:
         modulus = _TURN
+    modulus = _usual(modulus, numbers)
     is_wrap = is_turn or _goes_on(series, steps, numbers) or _flickers(series, steps, numbers)
     return (steps, modulus) if is_wrap else (none, 0.0)
+
+
+def _usual(modulus: float, numbers: Inspecting) -> float:
+    """Replace a modulus by the usual one that it is near: an error of it would add up with each wrap."""
+    near = min(_USUAL, key=lambda one: abs(modulus / one - 1.0))
+    return near if abs(modulus / near - 1.0) < numbers.same_turn else modulus
 
 
 def _are_alike(off: Floats, slack: float, others: Floats, numbers: Inspecting) -> bool:
@@ -82,9 +91,13 @@ def _slopes(changes: Floats, steps: Integers) -> Floats:
 def _goes_on(series: Series, steps: Integers, numbers: Inspecting) -> bool:
     """Whether the motion across some jump, undone, goes on in its direction for some readings on both sides.
 
-    A spike returns at once, and a run that another one follows in the file does not go on.
+    A spike returns at once, and a run that another one follows in the file does not go on. A slow motion takes more readings to
+    leave the noise.
     """
-    length = numbers.goes_on
+    return any(_goes_on_for(length, series, steps, numbers) for length in (numbers.goes_on, numbers.goes_on_slowly))
+
+
+def _goes_on_for(length: int, series: Series, steps: Integers, numbers: Inspecting) -> bool:
     bounds = np.r_[-1, steps, len(series) - 1]
     for place, step in enumerate(steps, start=1):
         if min(step - bounds[place - 1], bounds[place + 1] - step) < length:

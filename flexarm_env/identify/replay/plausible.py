@@ -7,10 +7,36 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 from flexarm_env.experiments.plausible import check_motion
-from flexarm_env.experiments.stated import stated_by, with_stated
+from flexarm_env.experiments.stated import check_stated, stated_by, with_stated
+from flexarm_env.identify.replay.build_run import readings_of
+from flexarm_env.identify.replay.readings import share_of
 from flexarm_env.identify.settings import Preparation
+from flexarm_env.parameters import INPUTS
 from flexarm_env.plant.plant import NO_INTERVALS
 from flexarm_env.recordings.recording import Recording
+
+
+def check_recording(arm: Arm, recording: Recording, numbers: Preparation) -> None:
+    """Refuse a recording that does not fit an arm, or under which its model cannot be judged.
+
+    Args:
+        arm: the model, with sensors that the recording has.
+        recording: of the machine.
+        numbers: of the method.
+
+    Raises:
+        InputError: for another kind of command, too few readings, and times or commands beyond any arm.
+    """
+    if recording.input_kind != arm.input:
+        other = next(kind for kind in INPUTS if kind != arm.input)
+        raise InputError(f"{recording.name} holds {other}, but arm '{arm.name}' is driven by {arm.input}")
+    check_stated(arm, recording)
+    count = int(np.count_nonzero(share_of(readings_of(arm, recording))))
+    if count < numbers.fewest_samples:
+        with_readings = f" with a reading of {' or '.join(arm.signals)}" if count < len(recording) else ""
+        raise InputError(f"{recording.name} has {count} samples{with_readings}; at least {numbers.fewest_samples} are needed")
+    check_steps(recording, numbers)
+    check_free_motion(arm, recording, numbers)
 
 
 def check_steps(recording: Recording, numbers: Preparation) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -43,6 +43,12 @@ class SensorNoise:
         least = max(numbers.least_noise_share * self.span, numbers.least_noise, self.rounding)
         return max(self.found.total, least) if self.found else max(numbers.default_noise * self.span, least)
 
+    def shown(self, numbers: Preparation) -> float | None:
+        """Standard deviation of a reading that the recordings show, in the signal's unit; None where they show none."""
+        if self.found is None:
+            return None
+        return self.found.total if self.stated > 0.0 else self.deviation(numbers)
+
     def note(self, unit: str, numbers: Preparation) -> str:
         """Describe noise that was estimated, or that disagrees with the arm file; "" otherwise."""
         if self.stated == 0.0:
@@ -68,30 +74,30 @@ class SensorNoise:
         return "found in the recordings"
 
 
-def find_noise(arm: Arm, recordings: Sequence[Recording], motion: Sequence[Floats] | None = None) -> tuple[SensorNoise, ...]:
+#: The noise of sensors by signal.
+NoiseBySignal = Mapping[str, SensorNoise]
+
+
+def find_noise(arm: Arm, recordings: Sequence[Recording], motion: Sequence[Mapping[str, Floats]] = ()) -> NoiseBySignal:
     """Collect the stated noise of each signal of an arm, and estimate it from recordings.
 
     Args:
         arm: the model.
-        recordings: of the machine, with all the arm's signals.
-        motion: (samples, signals) replayed readings of each recording, which are subtracted in a second estimate: a command
+        recordings: of the machine; each of the arm's signals is in one at least.
+        motion: (samples,) replayed readings of each recording by signal, which are subtracted in a second estimate: a command
             under feedback holds noise of the sensors and moves the arm as fast. Motion only adds, so the lower one counts.
     """
-    found = []
-    for i, signal in enumerate(arm.signals):
-        runs = [Readings(r.time, r.signals[signal]) for r in recordings]
-        if motion is not None:
-            runs += [replace(run, motion=replayed[:, i]) for run, replayed in zip(runs, motion, strict=True)]
+    found = {}
+    for signal in arm.signals:
+        having = [one for one in recordings if signal in one.signals]
+        runs = [Readings(one.time, one.signals[signal]) for one in having]
+        pairs = zip(recordings, motion, strict=True) if motion else ()
+        left = [Readings(one.time, one.signals[signal], moved[signal]) for one, moved in pairs if signal in moved]
         written = reading_noise(arm.sensors[signal])
         stated, rounding = (0.0, written) if signal in arm.auto_noise else (written, 0.0)
         span = float(extent(np.concatenate([run.values for run in runs])))
-        found.append(SensorNoise(signal, stated, estimate_noise(runs), span, rounding))
-    return tuple(found)
-
-
-def is_open(noises: Sequence[SensorNoise], numbers: Preparation) -> bool:
-    """Whether the noise of a signal is not stated, or disagrees with the arm file."""
-    return any(noise.note("", numbers) for noise in noises)
+        found[signal] = SensorNoise(signal, stated, estimate_noise([*runs, *left]), span, rounding)
+    return found
 
 
 def with_found_noise(arm: Arm, noises: Sequence[SensorNoise], numbers: Preparation) -> Arm:

@@ -14,12 +14,12 @@ from flexarm_env.errors import InputError
 from flexarm_env.recordings.columns import ColumnMap, Source
 from flexarm_env.recordings.formats.base import Format
 from flexarm_env.recordings.formats.extras import library
+from flexarm_env.recordings.formats.lerobot import EPISODE, FRAME, STAMP, exact_times
 from flexarm_env.recordings.headers import absence, header_sources
 from flexarm_env.recordings.messages import quoted
 from flexarm_env.recordings.table import MOST_LINES, Table
 
 _ELEMENT = re.compile(r"(.*)\[(\d{1,9})\]")
-_EPISODE = "episode_index"
 
 
 def read(content: bytes, columns: ColumnMap | None) -> Table:
@@ -43,15 +43,17 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
         raise InputError(f"has {rows} rows, the limit is {MOST_LINES}; cut it into shorter recordings")
     found = _places(names, columns or ColumnMap())
     try:
-        if _EPISODE in names:
-            _check_episodes(file.read([_EPISODE]).column(0).to_numpy())
+        episodes = _whole_numbers(file, EPISODE) if EPISODE in names else np.zeros(0, np.int64)
         values = {
             name: _numbers(name, file.read([column], use_threads=False).column(0), element, source.unit, arrow.types)
             for name, (source, column, element) in found.items()
         }
+        if columns and columns.frame_rate and "time" in found and found["time"][1] == STAMP and FRAME in names:
+            values["time"] = exact_times(values["time"], _whole_numbers(file, FRAME).astype(float), columns.frame_rate)
     except (arrow.ArrowException, OSError, UnicodeDecodeError) as error:
         raise InputError(f"is damaged: {quoted(str(error))}") from None
-    return Table(values, {name: source for name, (source, _, _) in found.items()})
+    sources = {name: source for name, (source, _, _) in found.items()}
+    return Table(values, sources, episodes=episodes.tolist())
 
 
 def _places(names: list[str], layout: ColumnMap) -> dict[str, tuple[Source, str, int | None]]:
@@ -76,11 +78,12 @@ def _places(names: list[str], layout: ColumnMap) -> dict[str, tuple[Source, str,
     return found
 
 
-def _check_episodes(episodes: NDArray[np.generic]) -> None:
-    """Refuse a LeRobot file with several episodes, whose times begin again."""
-    several = np.unique(episodes)
-    if len(several) > 1:
-        raise InputError(f"has {len(several)} episodes in '{_EPISODE}', which are as many recordings; save each to a file")
+def _whole_numbers(file: Any, name: str) -> NDArray[np.int64]:
+    """Read a column of whole numbers."""
+    column = file.read([name]).column(0)
+    if column.null_count or not library("pyarrow", "Parquet file").types.is_integer(column.type):
+        raise InputError(f"column '{name}': is {quoted(str(column.type))} with {column.null_count} empty rows, no whole numbers")
+    return np.asarray(column.to_numpy(), dtype=np.int64)
 
 
 def _numbers(name: str, column: Any, element: int | None, unit: str, types: Any) -> NDArray[np.float64]:

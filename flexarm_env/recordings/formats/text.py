@@ -172,9 +172,9 @@ def _header(lines: Sequence[str], first: int, layout: ColumnMap) -> tuple[list[s
 
 
 def _column_of_stamps(row: str, labels: Mapping[int, str], layout: ColumnMap) -> int | None:
-    """Find the column of time if it holds dates with times, which need no unit, and other columns hold numbers."""
+    """Find the column of time if it holds dates with times or times of day, which need no unit; other columns hold numbers."""
     place = next((place for place, name in labels.items() if name == "time"), None)
-    cells = cut(row, layout.delimiter) if place is not None and "-" in row and ":" in row else []
+    cells = cut(row, layout.delimiter) if place is not None and ":" in row else []
     return place if place is not None and place < len(cells) and is_stamp(cells[place]) else None
 
 

@@ -1,4 +1,4 @@
-"""Dates with times in the cells of a text table, as ISO 8601 writes them."""
+"""Dates with times, and times of day, in the cells of a text table, as ISO 8601 writes them."""
 
 from __future__ import annotations
 
@@ -14,20 +14,24 @@ from flexarm_env.recordings.messages import quoted
 
 # Possessive, so that no cell takes time that grows faster than its length.
 _STAMP = re.compile(r"(\d{4}-\d\d-\d\d)[T ](\d\d:\d\d(?::\d\d(?:[.,]\d{1,9}+)?+)?+)[ ]?+(Z|[+-]\d\d:?\d\d)?+")
+_OF_DAY = re.compile(r"\d\d:\d\d:\d\d(?:[.,]\d{1,9}+)?+")
+_HALF_A_DAY, _DAY = np.timedelta64(12, "h"), np.timedelta64(24, "h")
 
 
 def is_stamp(cell: str) -> bool:
-    """Whether a cell is a date with a time.
+    """Whether a cell is a date with a time, or a time of day with seconds.
 
     Example:
-        >>> is_stamp("2024-05-01 10:00:00.25"), is_stamp("0.25")
-        (True, False)
+        >>> is_stamp("2024-05-01 10:00:00.25"), is_stamp("10:00:00.25"), is_stamp("0.25")
+        (True, True, False)
     """
-    return _STAMP.fullmatch(cell.strip()) is not None
+    return any(form.fullmatch(cell.strip()) for form in (_STAMP, _OF_DAY))
 
 
 def read_stamps(rows: Sequence[str], lines: Sequence[int], place: int, delimiter: str) -> NDArray[np.float64]:
-    """Read the times (n,) [s] of a column of dates with times, from the first of them.
+    """Read the times (n,) [s] of a column of dates with times, or of times of day, from the first of them.
+
+    A time of day that falls by more than half a day has passed midnight.
 
     Args:
         rows: the text of each sample.
@@ -38,6 +42,8 @@ def read_stamps(rows: Sequence[str], lines: Sequence[int], place: int, delimiter
     Raises:
         InputError: for a cell that is no such time, or has another time zone than the first.
     """
+    if _OF_DAY.fullmatch(cut(rows[0], delimiter)[place].strip()):
+        return _read_times_of_day(rows, lines, place, delimiter)
     found, zones = [], set()
     for row, line in zip(rows, lines, strict=True):
         cell = cut(row, delimiter)[place].strip()
@@ -53,3 +59,20 @@ def read_stamps(rows: Sequence[str], lines: Sequence[int], place: int, delimiter
             ) from None
     since = np.array(found) - found[0]
     return np.asarray(since / np.timedelta64(1, "s"), dtype=np.float64)
+
+
+def _read_times_of_day(rows: Sequence[str], lines: Sequence[int], place: int, delimiter: str) -> NDArray[np.float64]:
+    found = []
+    for row, line in zip(rows, lines, strict=True):
+        cell = cut(row, delimiter)[place].strip()
+        try:
+            if not _OF_DAY.fullmatch(cell):
+                raise ValueError
+            found.append(np.datetime64(f"1970-01-01T{cell.replace(',', '.')}", "ns"))
+        except ValueError:
+            raise InputError(
+                f"row {line + 1}, column 'time': {quoted(cell)} is no time of day as in the first row; correct it"
+            ) from None
+    times = np.array(found)
+    days = np.concatenate([[0], np.cumsum(np.diff(times) < -_HALF_A_DAY)])
+    return np.asarray((times - times[0] + days * _DAY) / np.timedelta64(1, "s"), dtype=np.float64)

@@ -300,3 +300,26 @@ def test_a_gage_exchanged_with_the_tachometer_is_found_beside_wrong_constants():
     exchanged = run.signals | {"motor_speed": run.signals["strain_base"], "strain_base": run.signals["motor_speed"]}
     fault = found_in("thesis", replace(run, signals=exchanged))
     assert (fault.kind, {fault.signal, fault.other}) == ("swapped", {"motor_speed", "strain_base"})
+
+
+@pytest.mark.parametrize("arm", ["thesis", "cu-rigid", "cu-flexible"])
+@pytest.mark.parametrize("lag", [0.012, 0.048])
+def test_an_angle_late_by_milliseconds_is_found_against_the_speed(arm, lag):
+    """The model has other constants, which change nothing: angle and speed are readings of one motion."""
+    runs = [simulate(Arm.load(arm), name, duration=6.0, rate=250.0, seed=2, name=name) for name in ("square", "pulse", "sweep")]
+    changed = Arm.load(arm).with_values({"hub.inertia": 1.2 * Arm.load(arm).value("hub.inertia")})
+    found = motion_faults(changed, [late(run, lag, ("arm_angle",)) for run in runs])
+    assert [(one.kind, one.signal, one.other) for one in found] == 3 * [("clock", "arm_angle", "motor_speed")]
+    assert all(one.value == pytest.approx(lag, rel=CLOSE) for one in found)
+    assert "late against motor_speed" in found[0].message
+
+
+@pytest.mark.parametrize("times", [1.0, 4.0])
+@pytest.mark.parametrize("effect", ["backlash", "gear_compliance", "tach_filter", "pot_nonlinearity", "tach_ripple"])
+def test_effects_between_motor_and_angle_are_no_lag(effect, times):
+    arm = Arm.load("thesis")
+    sizes = {name: one for name, one in arm.known[effect].parameters.items() if one.null is not None}
+    size = {name: one.typical * (times if math.isfinite(one.null) else 1.0 / times) for name, one in sizes.items()}
+    machine = arm.with_effect(effect, **size)
+    runs = [simulate(machine, name, duration=6.0, seed=2, name=name) for name in ("square", "pulse", "sweep")]
+    assert not [one for run in runs for one in motion_faults(arm, [run]) if one.kind == "clock"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tomllib
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from flexarm_env import Arm, Recording, inspect_recordings
+from flexarm_env import Arm, Recording, inspect_recordings, simulate
 from flexarm_env.identify.inspect.inspection import reading_faults
 from flexarm_env.identify.inspect.series import Inspected
 
@@ -65,3 +66,22 @@ def test_a_single_step_to_another_run_is_no_wrap(thesis, pulse, square):
     time = np.r_[pulse.time, pulse.duration + 0.002 + square.time]
     both = Recording.from_arrays("both", time, "current", np.r_[pulse.command, square.command], signals)
     assert [fault.kind for fault in inspect_recordings(thesis, [both]).faults] == ["glued"]
+
+
+@pytest.mark.parametrize(
+    ("per_radian", "modulus"),
+    [(4096 * 48.4 / math.tau, 2.0**16), (math.degrees(10.0), 360.0)],
+    ids=["counts", "degrees"],
+)
+def test_a_counter_has_one_line_for_its_modulus_and_its_factor(tmp_path, per_radian, modulus):
+    """The modulus is in SI, after the scale: two lines, each right by itself, would be wrong together."""
+    arm = Arm.load("cu-rigid")
+    sound = simulate(arm, "square", duration=6.0, seed=1)
+    counted = np.mod(np.round(per_radian * sound.signals["arm_angle"], 1) + 0.9 * modulus, modulus)
+    faulty = replace(sound, signals=sound.signals | {"arm_angle": counted})
+    wrap, factor = inspect_recordings(arm, [faulty]).faults
+    assert (wrap.kind, wrap.value, factor.kind) == ("wrap", modulus, "factor")
+    assert wrap.hint == factor.hint
+    columns = tomllib.loads(wrap.hint)
+    faulty.write(tmp_path / "run.csv")
+    assert not inspect_recordings(arm, [Recording.read(tmp_path / "run.csv", columns)]).faults
