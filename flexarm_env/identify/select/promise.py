@@ -58,7 +58,6 @@ class Background:
         sigma: (rows, signals) deviation of the errors, at least that which they have.
         slopes: (readings,) of all errors over the noise, by the path of each value.
         orthonormal: (readings, values) basis of the changes that the values can make under their priors.
-        growth: (levels, groups, signals) variance of forecasts under levels of torque, over that of the noise.
     """
 
     prediction: Prediction
@@ -67,12 +66,18 @@ class Background:
     sigma: Floats
     slopes: Mapping[str, Floats]
     orthonormal: Floats
-    growth: Floats
 
     @functools.cached_property
     def leads(self) -> Leads:
         """Lead times of the forecasts' rows."""
         return self.prediction.leads.of(self.states.rows)
+
+    @functools.cached_property
+    def growth(self) -> Floats:
+        """Variance (levels, groups, signals) of forecasts under levels of torque, over that of the noise."""
+        levels = torque_levels(self.prediction)[:: self.prediction.dataset.settings.promising.every]
+        disturbances = [replace(self.prediction.disturbances, torque=torque) for torque in levels]
+        return np.array([self.prediction.spread.growth(one) for one in disturbances])
 
     @functools.cached_property
     def left(self) -> Floats:
@@ -124,10 +129,8 @@ def _background(parameters: FitParameters, prediction: Prediction) -> Background
     whitened = slopes[np.repeat(rows, errors.shape[1])] / sigma.ravel()[:, None]
     stacked = np.vstack([whitened, np.diag(1.0 / narrowed(parameters, prediction))])
     orthonormal = np.linalg.qr(stacked)[0][: errors.size]
-    levels = [replace(prediction.disturbances, torque=torque) for torque in torque_levels(prediction)[:: numbers.every]]
-    growth = np.array([prediction.spread.growth(level) for level in levels])
     by_path = dict(zip([parameter.path for parameter in parameters], slopes.T, strict=True))
-    return Background(prediction, states, errors, sigma, by_path, orthonormal, growth)
+    return Background(prediction, states, errors, sigma, by_path, orthonormal)
 
 
 def _promise(backgrounds: Sequence[Background], base: float, effect: str, start: dict[str, float]) -> Promise:
