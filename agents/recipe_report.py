@@ -114,8 +114,8 @@ def report_of(runs: Mapping[str, Sequence[Mapping[str, Any]]], known: Mapping[st
     lines = [
         "# PPO with the defaults of Stable-Baselines3 on FlexArm/Slew-v0",
         "",
-        "Each run is judged by 100 deterministic episodes that training does not see: it ends well where the tip's mean error over",
-        "the last 0.5 s is below 1° in all of them. A step is an action, of 20 ms with the wrapper and of 5 ms without.",
+        "Each run is judged by 100 deterministic episodes that training does not see: it ends well where the tip's mean error",
+        "over the last 0.5 s is below 1° in all of them. A step is an action, of 20 ms with the wrapper and of 5 ms without.",
         "",
         *runs_table(runs, meanings),
         "",
