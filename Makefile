@@ -12,7 +12,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 export MPLBACKEND ?= Agg
 
-.PHONY: help demo thesis test lint bench tune baselines robustness policies train results docs clean clean-cache
+.PHONY: help demo thesis test libraries lint bench tune baselines robustness policies train results docs clean clean-cache
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 22
@@ -25,6 +25,11 @@ thesis: $(PLOTS) ## check the thesis's claims and draw its figures again in resu
 
 test: $(DEV) ## run the tests; SLOW=1 adds the slow ones, after the others
 	$(BIN)/python -m pytest -n auto --maxprocesses 8 --dist worksteal $(if $(SLOW),-m "slow or not slow")
+
+# Each alone: where one cannot be installed, the others are tried, and its tests say that they are skipped.
+libraries: $(DEV) ## try the environments with TorchRL, RLlib and Minari, those that can be installed
+	for each in 'minari[hdf5,create]' torchrl 'ray[rllib]'; do $(BIN)/python -m pip install --quiet "$$each" || true; done
+	$(BIN)/python -m pytest -n 0 tests/env/test_libraries.py tests/agents/test_dataset.py
 
 lint: $(DEV) ## check style, format and types
 	$(BIN)/ruff check .

@@ -167,6 +167,16 @@ def rigs_tables(numbers: str) -> str:
     return document(json.loads(numbers)["rigs"], "../results/rigs/")
 
 
+def lines_with(first: str) -> Callable[[str], str]:
+    """Make a function that takes the table with this beginning from a report in Markdown."""
+
+    def taken(report: str) -> str:
+        (table,) = (part for part in report.split("\n\n") if part.startswith(first))
+        return table + "\n"
+
+    return taken
+
+
 @dataclass(frozen=True)
 class Table:
     """A table of a document: its name in the comments, the file of its numbers, and the function that writes it."""
@@ -194,6 +204,8 @@ TABLES = (
     Table("hidden-effects", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.md", hidden_effects_table),
     Table("methods", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.json", methods_table),
     Table("rigs", PROJECT / "docs" / "rigs.md", RESULTS / "rigs" / "rigs.json", rigs_tables),
+    Table("recipes", PROJECT / "docs" / "learning.md", RESULTS / "recipe" / "recipe.md", lines_with("| observation")),
+    Table("references", PROJECT / "docs" / "learning.md", RESULTS / "recipe" / "recipe.md", lines_with("| agent")),
     Table("times", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.json", times_words),
 )
 

@@ -59,8 +59,9 @@ with another target. `env.unwrapped.set_state(state)` goes back to a state that 
 ## Arguments
 
 `arm` (name, arm file or `Arm`; the corrected arm that `flexarm diagnose --save` writes as well), `prior`, `randomise`,
-`vary`, `disturb`, `control_rate`, `duration`, `physical`, `render_mode`: see `FlexArmEnv`. `FlexArm/{title}-Random-v0` carries an
-unknown payload of {lightest:g} to {heaviest:g} kg at its tip, drawn anew for each episode.
+`vary`, `goals`, `disturb`, `control_rate`, `duration`, `physical`, `render_mode`: see `FlexArmEnv`. `FlexArm/{title}-Random-v0`
+carries an unknown payload of {lightest:g} to {heaviest:g} kg at its tip, `FlexArm/{title}-Goal-v0` has another target (`goals`),
+both drawn anew for each episode. `FlexArm/{title}-Shaped-v0` has the observation, action and reward of the shipped policies.
 
 ```python
 >>> import gymnasium as gym
