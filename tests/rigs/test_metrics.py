@@ -54,7 +54,7 @@ def test_the_current_error_of_ur10e_is_that_of_a_regression(measurements):
 
     columns = [smooth(np.gradient(speed, time)), smooth(speed), smooth(np.sign(speed))]
     arm = Arm.load(UR10E.arm)
-    run = replace(UR10E.training[0], stop=1.0).read(measurements, arm)
+    run = replace(UR10E.held_out[0], stop=1.0).read(measurements, arm)
     metric = CommandError(Recipe(both=5.0), "A")
     paths = ("hub.inertia", "effects.viscous.coefficient", "effects.coulomb.torque")
     for count, printed in ((1, 2.71), (2, 0.613), (3, 0.184)):
@@ -65,6 +65,18 @@ def test_the_current_error_of_ur10e_is_that_of_a_regression(measurements):
         fitted = arm.with_effect("viscous", coefficient=0.0).with_effect("coulomb", torque=0.0).with_values(values)
         assert metric.of(fitted, [run]) == pytest.approx(expected, rel=1e-4)
         assert expected == pytest.approx(printed, rel=0.02)
+
+
+def test_the_published_constants_of_the_dfki_pendulum_give_the_figure_beside_them(measurements):
+    """J 0.06259, m c 0.1022, viscous 0.04707, Coulomb 0.289 where it saturates, offset −0.07586, whichever its sign means."""
+    rig = next(rig for rig in RIGS if rig.name == "dfki")
+    arm = Arm.load(rig.arm)
+    arm = arm.with_values({"link.inertia": 0.06259, "link.mass": 0.1022 / arm.value("link.centre")})
+    arm = arm.with_effect("viscous", coefficient=0.04707).with_effect("coulomb", torque=0.289)
+    runs = [record.read(measurements, arm) for record in rig.held_out]
+    for offset in (-0.07586, 0.07586):
+        found = rig.metric.of(arm.with_effect("constant_torque", torque=offset), runs)
+        assert found == pytest.approx(rig.published[-1].value, rel=0.02)
 
 
 def test_dry_friction_holds_an_arm_at_rest_up_to_its_size():
