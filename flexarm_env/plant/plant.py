@@ -32,7 +32,7 @@ class Plant:
     def __init__(self, structure: Structure, active: Sequence[ActiveLaw], catalogue: Sequence[Law], interval: float) -> None:
         self.kernel: Any = compose(catalogue)
         model = assemble(structure)
-        self.model, self.interval = model, interval
+        self.structure, self.model, self.interval = structure, model, interval
         self.signals = model.signals
         self.constants, self.layout, self.delay_samples = pack(structure, model, [active], interval)
         n, d = self.layout, self.constants
@@ -92,11 +92,11 @@ class Plant:
         hub = self.mode_matrix(mode, at.FORCE_COLUMNS, 1)[0]
         return to_physical @ step @ self.to_modal(mode), to_physical @ answer @ hub
 
-    def place(self, physical: Matrix | None = None, command: float = 0.0) -> None:
-        """Set the state [q, q̇, extra] (states,), at rest at angle 0 by default, under a command [A or V]."""
+    def place(self, physical: Matrix | None = None, command: float = 0.0, time: float = 0.0) -> None:
+        """Set the state [q, q̇, extra] (states,), at rest at angle 0 by default, under a command [A or V] at a time [s]."""
         start = np.zeros(self.states) if physical is None else np.ascontiguousarray(physical, dtype=float)
         self.state[:] = 0.0
-        self.state[at.COMMAND] = command
+        self.state[at.COMMAND], self.state[at.TIME] = command, time
         self.kernel.place_at(self.constants, self.layout, self.state, start, command, self.scratch)
 
     def physical(self) -> Matrix:

@@ -23,13 +23,15 @@ class Calibration:
         arm: with the calibrated values.
         solution: where the minimisation ended.
         objective: of its last pass.
-        moved: (x,) how far the values moved when the held-out part came in; None before.
+        moved: (x,) how far the values moved when the held-out part came in, and from one minimum to the next; None before.
+        narrow: Jacobian (rows, x) by narrow differences where the values ended, weighted as the objective; None before.
     """
 
     arm: Arm
     solution: Solution
     objective: Objective
     moved: Floats | None = None
+    narrow: Floats | None = None
 
     @property
     def parameters(self) -> FitParameters:

@@ -6,22 +6,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibration import Calibration
 from flexarm_env.identify.calibrate.least_squares import Solution, minimise
 from flexarm_env.identify.calibrate.objective import objective_at
-from flexarm_env.identify.calibrate.parameters import FitParameters, free_parameters
+from flexarm_env.identify.calibrate.parameters import free_parameters
 from flexarm_env.identify.calibrate.refine import refine
+from flexarm_env.identify.calibrate.schedule import Schedule
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.error_measure import Score, score
 from flexarm_env.identify.replay.hold_out import hold_out_late
 from flexarm_env.identify.replay.scales import torque_scale
 from flexarm_env.identify.settings import Settings
 from flexarm_env.identify.workers import Workers
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -56,12 +54,11 @@ class Calibrator:
         """
         numbers = self.settings.calibrating
         levels = self.settings.process_noise.calibration if levels is None else levels
-        return self._run_schedule(arm, self._noises(arm, levels, numbers.passes), numbers.iterations)
+        return self._run_schedule(arm, levels, numbers.passes, numbers.iterations)
 
     def calibrate_briefly(self, arm: Arm) -> tuple[float, Calibration]:
         """Calibrate an arm in a few steps; also give its error in windows on the fitted part."""
-        noises = self._noises(arm, self.settings.process_noise.brief, passes=0)
-        found = self._run_schedule(arm, noises, self.settings.calibrating.brief_iterations)
+        found = self._run_schedule(arm, self.settings.process_noise.brief, 0, self.settings.calibrating.brief_iterations)
         return self.score(found.arm, held_out=False).windows, found
 
     def uncalibrated(self, arm: Arm) -> Calibration:
@@ -144,10 +141,13 @@ class Calibrator:
         objective = objective_at(found.arm, self.dataset.nothing_held_out(), parameters, found.objective.torque_noise)
         objective = objective.weighted_by(found.arm, narrow_priors=False)
         x, prior = parameters.position(found.arm), objective.weights.prior
-        steps, iterations, tolerance = found.solution.steps, numbers.last_iterations, numbers.final_tolerance
+        is_close = objective.excess_factor <= self.settings.errors.close  # and will be refined
+        iterations = 1 if is_close else numbers.last_iterations
+        steps, tolerance = found.solution.steps, numbers.final_tolerance
         solution = minimise(objective.residual, x, prior, steps, self.settings.least_squares, iterations, tolerance)
-        refined = replace(solution, x=refine(objective, solution.x))
-        return Calibration(parameters.apply(found.arm, refined.x), refined, objective, solution.x - x)
+        refined = refine(objective, solution.x)
+        moved, at = np.hypot(solution.x - x, refined.scatter), replace(solution, x=refined.x, residual=refined.residual)
+        return Calibration(parameters.apply(found.arm, refined.x), at, objective, moved, refined.jacobian)
 
     def nominal_with_effects_of(self, arm: Arm) -> Arm:
         """Give the nominal arm the effects that another has beside its own."""
@@ -163,25 +163,9 @@ class Calibrator:
         far = [p.path for p, deviations in moved if deviations > most] or [p.path for p, _ in moved]
         return found.arm.with_values({path: self.nominal.value(path) for path in far})
 
-    def _noises(self, arm: Arm, levels: Sequence[float], passes: int) -> list[float]:
-        """List the process noises [Nm] of a calibration: the levels above the arm's own torque noise, then passes at that."""
+    def _run_schedule(self, arm: Arm, levels: Sequence[float], passes: int, iterations: int) -> Calibration:
+        """Calibrate through levels of process noise, over the rms torque of the drive, and in passes at the arm's own."""
         scale, own = torque_scale(arm, self.dataset.runs), arm.constants["drive"]["torque_noise"]
         noises = [level * scale for level in levels if level * scale > own]
-        return noises + [own] * (passes if noises else max(passes, 1))
-
-    def _run_schedule(self, arm: Arm, noises: Sequence[float], iterations: int) -> Calibration:
-        settings = self.settings
-        tolerances = [settings.calibrating.tolerance] * (len(noises) - 1) + [settings.calibrating.final_tolerance]
-        parameters: FitParameters = free_parameters(arm, self.nominal, self.dataset)
-        x = parameters.position(arm)
-        steps = parameters.step_sizes(x, settings.parameters)
-        for number, (noise, tolerance) in enumerate(zip(noises, tolerances, strict=True), start=1):
-            objective = objective_at(arm, self.dataset, parameters, noise)
-            objective = objective.weighted_by(parameters.apply(arm, x))
-            is_last_of_several = number == len(noises) >= settings.calibrating.passes
-            if is_last_of_several:
-                steps = steps.narrowed(settings.least_squares.narrow)
-            prior = objective.weights.prior
-            solution = minimise(objective.residual, x, prior, steps, settings.least_squares, iterations, tolerance)
-            x, steps = solution.x, solution.steps
-        return Calibration(parameters.apply(arm, x), solution, objective)
+        schedule = Schedule(arm, self.dataset, free_parameters(arm, self.nominal, self.dataset), iterations)
+        return schedule.run(noises, passes if noises else max(passes, 1))

@@ -11,9 +11,9 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibration import Calibration
 from flexarm_env.identify.calibrate.common_scale import force_powers, scale_deviation
 from flexarm_env.identify.calibrate.estimate import Estimate
-from flexarm_env.identify.calibrate.least_squares import covariance, jacobian
-from flexarm_env.identify.calibrate.objective import Objective
+from flexarm_env.identify.calibrate.least_squares import covariance, slopes
 from flexarm_env.identify.calibrate.parameters import FitParameter
+from flexarm_env.identify.replay.readings import rms_of
 from flexarm_env.identify.settings import LEAST_NORM
 
 Floats = NDArray[np.float64]
@@ -30,10 +30,11 @@ def estimates(calibration: Calibration, nominal: Arm) -> list[Estimate]:
         nominal: the arm before it.
     """
     parameters, x = calibration.parameters, calibration.solution.x
-    objective = _weighted_by_residual(calibration)
+    objective = calibration.objective
     numbers = objective.dataset.settings.intervals
     powers = force_powers(calibration.arm, parameters)
-    variance = _scatter(objective, calibration, powers) + (0.0 if calibration.moved is None else calibration.moved**2)
+    variance = _scatter(calibration, powers) + (0.0 if calibration.moved is None else calibration.moved**2)
+    objective = replace(objective, weights=replace(objective.weights, sigma=_left_by(calibration), prior=parameters.priors))
     common = scale_deviation(objective, x, powers)
     relative = np.hypot(numbers.best_model, common * np.abs(powers))
     sizes = [abs(p.value(v)) / p.scale if p.scale else 1.0 for p, v in parameters.pairs(x)]
@@ -51,27 +52,35 @@ def _estimate(parameter: FitParameter, x: float, half_width: float, nominal: Arm
     return Estimate(parameter.path, parameter.value(x), low, high, nominal.parameter(parameter.path).unit, before)
 
 
-def _weighted_by_residual(calibration: Calibration) -> Objective:
-    """Weigh errors by those that the calibration left, under its priors."""
-    objective = calibration.objective
-    weights = replace(objective.weights, sigma=objective.rms_errors_of(calibration.arm))
-    return replace(objective, weights=weights)
+def _left_by(calibration: Calibration) -> Floats:
+    """Compute the rms error (runs, signals) that a calibration leaves, at least the noise."""
+    objective, left = calibration.objective, []
+    errors = calibration.solution.residual * objective.rows_of(objective.weights.sigma)
+    for run in objective.dataset.fitted:
+        count = run.measured.size
+        left.append(rms_of(errors[:count].reshape(run.measured.shape), run.measured))
+        errors = errors[count:]
+    return np.maximum(np.array(left), objective.dataset.noise)
 
 
-def _scatter(objective: Objective, calibration: Calibration, powers: NDArray[np.int64]) -> Floats:
-    """Estimate the variance of each x (x,) from the residual, but for the common scale of forces.
+def _scatter(calibration: Calibration, powers: NDArray[np.int64]) -> Floats:
+    """Estimate the variance of each x (x,) from the residual, weighed by what is left, but for the common scale of forces.
 
     By differences as wide as the fit's and by narrow ones, whichever gives more. Wide ones show motion where values that change
     together leave none. Narrow ones show changes that sticking covers.
     """
-    settings, x = objective.dataset.settings, calibration.solution.x
-    prior = objective.parameters.priors
+    objective, solution = calibration.objective, calibration.solution
+    settings, x, prior = objective.dataset.settings, solution.x, objective.parameters.priors
     block = max(int(settings.intervals.block / objective.dataset.interval), 1) * len(objective.dataset.signals)
-    residual, onto_scale = objective.residual(x), powers / prior**2
+    onto_scale = powers / prior**2
     rest = np.eye(len(x)) - np.outer(powers, onto_scale) / max(float(onto_scale @ powers), LEAST_NORM)
+    narrow = calibration.narrow
+    if narrow is None:
+        narrow = slopes(objective.residual, x, solution.residual, np.full(len(x), settings.refining.difference))
+    by_left = objective.rows_of(objective.weights.sigma / _left_by(calibration))
     variances = []
-    for steps in (calibration.solution.steps.now, np.full(len(x), settings.refining.difference)):
-        spread = covariance(jacobian(objective.residual, x, steps), residual, prior, block)
+    for changes in (solution.jacobian, narrow):
+        spread = covariance(changes * by_left[:, None], solution.residual * by_left, prior, block)
         variances.append(np.diag(rest @ spread @ rest.T))
     largest: Floats = np.maximum.reduce([*variances, np.zeros(len(x))])
     return largest

@@ -66,21 +66,46 @@ class Solution:
     steps: StepSizes
 
 
-def jacobian(residual: Residual, x: Floats, steps: Floats, first: int = 0) -> Floats:
-    """Compute central differences (rows, steps) of the residual over steps to either side, of x from the first on.
+def jacobian(residual: Residual, x: Floats, steps: Floats) -> Floats:
+    """Compute central differences (rows, steps) of the residual over steps to either side.
 
     Columns are computed in one thread unless a `Workers.threads` context is open.
     """
 
     def column(k: int, width: float) -> Floats:
-        above, below = x.copy(), x.copy()
-        above[k] += width
-        below[k] -= width
-        return (residual(above) - residual(below)) / (2.0 * width)
+        return (residual(_aside(x, k, width)) - residual(_aside(x, k, -width))) / (2.0 * width)
 
-    if not len(steps):
-        return np.zeros((len(residual(x)), 0))
-    columns = Parallel(prefer="threads")(delayed(column)(k, width) for k, width in enumerate(steps, start=first))
+    return _in_columns(column, steps) if len(steps) else np.zeros((len(residual(x)), 0))
+
+
+def slopes(residual: Residual, x: Floats, here: Floats, steps: Floats, first: int = 0) -> Floats:
+    """Compute differences (rows, steps) of the residual over steps to one side, of x from the first on.
+
+    Half the replays of central ones. Steps up are taken, or steps down where a value has no room above.
+
+    Args:
+        residual: whitened residual (rows,).
+        x: where (x,).
+        here: the residual there (rows,).
+        steps: widths.
+        first: place in x of the first.
+    """
+
+    def column(k: int, width: float) -> Floats:
+        change = residual(_aside(x, first + k, width)) - here
+        return change / width if change.any() else (here - residual(_aside(x, first + k, -width))) / width
+
+    return _in_columns(column, steps) if len(steps) else np.zeros((len(here), 0))
+
+
+def _aside(x: Floats, k: int, width: float) -> Floats:
+    there = x.copy()
+    there[k] += width
+    return there
+
+
+def _in_columns(column: Callable[[int, float], Floats], steps: Floats) -> Floats:
+    columns = Parallel(prefer="threads")(delayed(column)(k, width) for k, width in enumerate(steps))
     return np.nan_to_num(np.stack(columns, axis=1))
 
 
@@ -112,23 +137,83 @@ def minimise(
         tolerance: relative decrease of the cost at which to stop, unless narrower differences may help.
         frozen: Jacobian (rows, first columns) taken over from elsewhere and not computed again.
     """
-    r = residual(x)
+    problem, r = Problem(residual, prior, numbers, tolerance), residual(x)
     point = _Point(x, r, cost_of(r, x, prior), numbers.first_damping)
     known = 0 if frozen is None else frozen.shape[1]
     j = np.empty((len(r), len(x)))
     if frozen is not None:
         j[:, :known] = frozen
+    return _minimise(problem, point, j, steps, known, iterations)
+
+
+def minimise_onward(problem: Problem, x: Floats, begun: Floats, steps: StepSizes, iterations: int) -> Solution:
+    """Minimise from a Jacobian of another level, which is computed anew only where it promises more than it gives.
+
+    Args:
+        problem: residual, priors and rules.
+        x: where to start.
+        begun: that Jacobian (rows, x).
+        steps: of the differences.
+        iterations: most Jacobians, this one included.
+    """
+    r = problem.residual(x)
+    point = _Point(x, r, cost_of(r, x, problem.prior), problem.numbers.first_damping)
+    j = begun.copy()
+    point = _descend(problem, point, j)
+    if iterations < 2 or _promise(j, point, problem.prior) < problem.tolerance * point.cost:
+        return Solution(point.x, point.cost, point.residual, j, steps)
+    steps = steps.adapted(point.residual, j, grow=True)
+    return _minimise(problem, point, j, steps, 0, iterations - 1)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A sum of squares to be minimised.
+
+    Attributes:
+        residual: whitened residual (rows,).
+        prior: standard deviation of each x around 0.
+        numbers: dampings and step rules.
+        tolerance: relative decrease of the cost that is not worth a step.
+    """
+
+    residual: Residual
+    prior: Floats
+    numbers: LeastSquares
+    tolerance: float
+
+
+@dataclass(frozen=True)
+class _Point:
+    """Where a minimisation stands: x, residual (rows,), cost, and the damping of the next step."""
+
+    x: Floats
+    residual: Floats
+    cost: float
+    damping: float
+
+
+def _minimise(problem: Problem, point: _Point, j: Floats, steps: StepSizes, known: int, iterations: int) -> Solution:
+    """Compute a Jacobian but for its known columns, descend along it, and again, until it promises or gives too little."""
+    numbers = problem.numbers
     for _ in range(iterations):
-        if known < len(x):
-            j[:, known:] = jacobian(residual, point.x, steps.now, known)
+        if known < len(point.x):
+            j[:, known:] = slopes(problem.residual, point.x, point.residual, steps.now, known)
         before = point.cost
-        point = _descend(residual, point, j, prior, numbers)
-        stays = before - point.cost < tolerance * before
+        point = _descend(problem, point, j)
+        stays = before - point.cost < problem.tolerance * before
         finer = steps.adapted(point.residual, j[:, known:], grow=not stays)
-        if stays and np.all(finer.now > numbers.shrinks * steps.now):
+        ends = stays or _promise(j, point, problem.prior) < problem.tolerance * point.cost
+        if ends and np.all(finer.now > numbers.shrinks * steps.now):
             break
         steps = finer
     return Solution(point.x, point.cost, point.residual, j, steps)
+
+
+def _promise(j: Floats, point: _Point, prior: Floats) -> float:
+    """Compute the decrease of the cost that an undamped step would bring if the residual were linear."""
+    slope = j.T @ point.residual + point.x / prior**2
+    return float(slope @ np.linalg.solve(j.T @ j + np.diag(prior**-2.0), slope))
 
 
 def descend(residual: Residual, x: Floats, slopes: Floats, prior: Floats, numbers: LeastSquares) -> tuple[Floats, Floats]:
@@ -145,34 +230,27 @@ def descend(residual: Residual, x: Floats, slopes: Floats, prior: Floats, number
         Where the steps ended (x,), and the Jacobian that they corrected (rows, x).
     """
     r, j = residual(x), slopes.copy()
-    point = _descend(residual, _Point(x, r, cost_of(r, x, prior), numbers.first_damping), j, prior, numbers)
-    return point.x, j
+    point = _Point(x, r, cost_of(r, x, prior), numbers.first_damping)
+    return _descend(Problem(residual, prior, numbers, 0.0), point, j).x, j
 
 
-@dataclass(frozen=True)
-class _Point:
-    """Where a minimisation stands: x, residual (rows,), cost, and the damping of the next step."""
-
-    x: Floats
-    residual: Floats
-    cost: float
-    damping: float
-
-
-def _descend(residual: Residual, point: _Point, j: Floats, prior: Floats, numbers: LeastSquares) -> _Point:
-    """Take damped steps along one Jacobian, which each corrects in place for the next, while they lower the cost enough."""
+def _descend(problem: Problem, point: _Point, j: Floats) -> _Point:
+    """Take damped steps along one Jacobian, which each corrects in place for the next, while they promise and give enough."""
+    numbers, prior = problem.numbers, problem.prior
     x, r, cost, damping = point.x, point.residual, point.cost, point.damping
     for number in range(numbers.steps):
         normal = j.T @ j + np.diag(prior**-2.0)
         slope = j.T @ r + x / prior**2
+        if slope @ np.linalg.solve(normal, slope) < problem.tolerance * cost:
+            break
         last = cost
         for _ in range(1 if number else numbers.trials):
             step = -np.linalg.solve(normal + damping * np.diag(np.diag(normal)), slope)
             step = np.clip(step, -numbers.largest_step, numbers.largest_step)
-            trial = residual(x + step)
+            trial = problem.residual(x + step)
             new = cost_of(trial, x + step, prior)
             if new < cost:
-                j += _secant_correction(trial - r - j @ step, step, np.diag(normal))
+                j += secant_correction(trial - r - j @ step, step, np.diag(normal))
                 x, r, cost = x + step, trial, new
                 damping = max(damping * numbers.less_damping, numbers.least_damping)
                 break
@@ -182,7 +260,7 @@ def _descend(residual: Residual, point: _Point, j: Floats, prior: Floats, number
     return _Point(x, r, cost, damping)
 
 
-def _secant_correction(missed: Floats, step: Floats, weights: Floats) -> Floats:
+def secant_correction(missed: Floats, step: Floats, weights: Floats) -> Floats:
     """Compute the correction by which a Jacobian reproduces the change along a step, in weighted x.
 
     Broyden, Math. Comput. 19 (1965) 577.

@@ -120,6 +120,16 @@ class Objective:
         found = np.array([rms_of(errors, run.measured) for errors, run in pairs])
         return np.maximum(np.nan_to_num(found, nan=np.inf, posinf=FAILED_ERROR), self.dataset.noise)
 
+    @property
+    def excess_factor(self) -> float:
+        """The rms of the weights over the noise: 1 where errors are weighed by the noise alone."""
+        return float(np.sqrt(np.mean((self.weights.sigma / self.dataset.noise) ** 2)))
+
+    def rows_of(self, sigma: Floats) -> Floats:
+        """Repeat numbers (runs, signals) for each row of the residual (rows,)."""
+        pairs = zip(self.dataset.fitted, sigma, strict=True)
+        return np.concatenate([np.broadcast_to(own, run.measured.shape).ravel() for run, own in pairs])
+
     def _bounded(self, parts: Sequence[Floats]) -> Floats:
         largest = self.dataset.settings.least_squares.largest_residual
         return np.clip(np.nan_to_num(np.concatenate(parts), nan=largest), -largest, largest)

@@ -8,12 +8,13 @@ the free replay.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.identify.calibrate.common_scale import best_scale, force_powers
-from flexarm_env.identify.calibrate.least_squares import Residual, cost_of, jacobian
+from flexarm_env.identify.calibrate.least_squares import Residual, cost_of, secant_correction, slopes
 from flexarm_env.identify.calibrate.objective import Objective, objective_at
 from flexarm_env.identify.replay.scales import torque_scale
 from flexarm_env.identify.settings import LEAST_NORM, Refining
@@ -21,8 +22,29 @@ from flexarm_env.identify.settings import LEAST_NORM, Refining
 Floats = NDArray[np.float64]
 
 
-def gauss_newton(residual: Residual, x: Floats, prior: Floats, numbers: Refining) -> Floats:
-    """Minimise |residual(x)|² + |x / prior|² by damped Gauss–Newton steps.
+@dataclass(frozen=True)
+class Refined:
+    """Where final steps ended.
+
+    Attributes:
+        x: (x,).
+        residual: there (rows,).
+        cost: sum of squares of residual and prior.
+        jacobian: (rows, x) of narrow differences, corrected along the steps; None where none were taken.
+        scatter: (x,) standard deviation of the minima that were found; none where there is one.
+    """
+
+    x: Floats
+    residual: Floats
+    cost: float
+    jacobian: Floats | None
+    scatter: Floats | float = 0.0
+
+
+def gauss_newton(residual: Residual, x: Floats, prior: Floats, numbers: Refining) -> Refined:
+    """Minimise |residual(x)|² + |x / prior|² by damped Gauss–Newton steps along one Jacobian, which each corrects.
+
+    The steps end where one promises less than chance, or gives much less than it promised.
 
     Args:
         residual: whitened residual (rows,).
@@ -31,28 +53,37 @@ def gauss_newton(residual: Residual, x: Floats, prior: Floats, numbers: Refining
         numbers: differences, dampings and stopping rule.
     """
     r = residual(x)
-    cost = cost_of(r, x, prior)
-    for _ in range(numbers.iterations):
-        j = jacobian(residual, x, np.full(len(x), numbers.difference)) * prior
-        strengths, axes = np.linalg.eigh(j.T @ j)
-        slope, before = axes.T @ (j.T @ r + x / prior), cost
-        for damping in numbers.dampings:
-            trial = x - prior * (axes @ (slope / (strengths + 1.0 + damping)))
-            left = residual(trial)
-            new = cost_of(left, trial, prior)
-            if new < cost:
-                x, r, cost = trial, left, new
-                break
-        if before - cost < numbers.tolerance * before:
-            break
-    return x
+    j = slopes(residual, x, r, np.full(len(x), numbers.difference))
+    here, keeps = Refined(x, r, cost_of(r, x, prior), j), True
+    while keeps:
+        ahead, promised = _step(residual, here, prior, numbers)
+        keeps, here = here.cost - ahead.cost > numbers.kept * promised, ahead
+    return here
 
 
-def refine(objective: Objective, x: Floats) -> Floats:
+def _step(residual: Residual, here: Refined, prior: Floats, numbers: Refining) -> tuple[Refined, float]:
+    """Take the least damped step that lowers the cost; also give the decrease that an undamped one promises."""
+    assert here.jacobian is not None
+    j = here.jacobian * prior
+    strengths, axes = np.linalg.eigh(j.T @ j)
+    slope = axes.T @ (j.T @ here.residual + here.x / prior)
+    promised = float(np.sum(slope**2 / (strengths + 1.0)))
+    for damping in numbers.dampings if promised >= numbers.least_promise else ():
+        step = -prior * (axes @ (slope / (strengths + 1.0 + damping)))
+        left = residual(here.x + step)
+        cost = cost_of(left, here.x + step, prior)
+        if cost < here.cost:
+            missed = left - here.residual - here.jacobian @ step
+            correction = secant_correction(missed, step, np.diag(j.T @ j) / prior**2 + prior**-2.0)
+            return Refined(here.x + step, left, cost, here.jacobian + correction), promised
+    return here, promised
+
+
+def refine(objective: Objective, x: Floats) -> Refined:
     """Move x to the best common scale and, where the model lacks nothing, on along weakly observable directions.
 
-    A replay is rough along those directions, and a fit ends in a local minimum. Where more is left than noise, two more minima
-    are sought from some way to either side.
+    A replay is rough along those directions, and a fit ends in a local minimum. One that leaves more than the corrected replay
+    before it is not the last: two more are sought from some way to either side.
 
     Args:
         objective: weighted by the errors where the fit ended, at the arm's own torque noise.
@@ -60,52 +91,67 @@ def refine(objective: Objective, x: Floats) -> Floats:
     """
     dataset = objective.dataset
     errors, process_noise = dataset.settings.errors, dataset.settings.process_noise
-    x, _ = best_scale(objective, x, force_powers(objective.arm, objective.parameters))
-    if not len(x) or np.sqrt(np.mean((objective.weights.sigma / dataset.noise) ** 2)) > errors.close:
-        return x
-
-    def cost(there: Floats) -> float:
-        return cost_of(objective.residual(there), there, objective.weights.prior)
-
-    best: Floats = min(x, _descend(objective, x, process_noise.refinement), key=cost)
-    if _error(objective, best) > errors.converged:
-        aside = dataset.settings.refining.aside * objective.weights.prior * _weakest_direction(objective, best)
-        starts = best - aside, best + aside
-        best = min(best, *(_descend(objective, start, process_noise.refinement_aside) for start in starts), key=cost)
-    return best
-
-
-def _descend(objective: Objective, x: Floats, levels: Sequence[float]) -> Floats:
-    """Minimise through levels of process noise, over the rms torque of the drive, and then at the arm's own."""
     powers = force_powers(objective.arm, objective.parameters)
+    x, _ = best_scale(objective, x, powers)
+    if not len(x) or objective.excess_factor > errors.close:
+        return _at(objective, x, None)
+    first, *_, best = ends = _descend(objective, x, process_noise.refinement)
+    if best.error > errors.converged * first.error:
+        aside = dataset.settings.refining.aside * objective.weights.prior * first.weakest_direction
+        starts = (best.found.x - aside, best.found.x + aside)
+        ends += [_descend(objective, start, process_noise.refinement_aside)[-1] for start in starts]
+    minima = [end.found for end in ends if end.level is objective]
+    found = min(minima, key=lambda end: end.cost)
+    x, _ = best_scale(objective, found.x, powers)
+    found = found if np.array_equal(x, found.x) else _at(objective, x, found.jacobian)
+    return replace(found, scatter=np.std([end.x for end in minima], axis=0))
+
+
+def _at(objective: Objective, x: Floats, near: Floats | None) -> Refined:
+    """Evaluate an objective at x, with a Jacobian from near by."""
+    residual = objective.residual(x)
+    return Refined(x, residual, cost_of(residual, x, objective.weights.prior), near)
+
+
+@dataclass(frozen=True)
+class _End:
+    """Where final steps at one level of process noise ended."""
+
+    level: Objective
+    found: Refined
+
+    @property
+    def error(self) -> float:
+        """The rms error over the noise."""
+        dataset = self.level.dataset
+        errors = self.found.residual * self.level.rows_of(self.level.weights.sigma / dataset.noise)
+        return float(np.sqrt(np.sum(errors**2) / dataset.readings(held_out=False)))
+
+    @property
+    def weakest_direction(self) -> Floats:
+        """The least observable direction (x,) but for the common scale: of unit length, in priors' standard deviations."""
+        assert self.found.jacobian is not None
+        prior = self.level.weights.prior
+        j = self.found.jacobian * prior
+        onto_scale = force_powers(self.level.arm, self.level.parameters) / prior
+        length = float(np.linalg.norm(onto_scale))
+        j -= np.outer(j @ onto_scale, onto_scale) / max(length**2, LEAST_NORM)
+        _, axes = np.linalg.eigh(j.T @ j)
+        return axes[:, 1 if length and len(prior) > 1 else 0]  # the scale itself comes first
+
+
+def _descend(objective: Objective, x: Floats, levels: Sequence[float]) -> list[_End]:
+    """Minimise through levels of process noise, over the rms torque of the drive, and then at the arm's own."""
     scale, own = torque_scale(objective.arm, objective.dataset.runs), objective.torque_noise
-    numbers = objective.dataset.settings.refining
-    for noise in [level * scale for level in levels if level * scale > own] + [own]:
-        level = _at_level(objective, x, noise)
-        x, _ = best_scale(level, gauss_newton(level.residual, x, level.weights.prior, numbers), powers)
-    return x
+    numbers, ends = objective.dataset.settings.refining, []
+    for noise in [*(level * scale for level in levels if level * scale > own), own]:
+        level = objective if noise == own else _at_level(objective, x, noise)
+        ends.append(_End(level, gauss_newton(level.residual, x, level.weights.prior, numbers)))
+        x = ends[-1].found.x
+    return ends
 
 
 def _at_level(objective: Objective, x: Floats, torque_noise: float) -> Objective:
     level = objective_at(objective.arm, objective.dataset, objective.parameters, torque_noise)
+    level = replace(level, starts=objective.starts)
     return level.weighted_by(objective.parameters.apply(objective.arm, x), narrow_priors=False)
-
-
-def _error(objective: Objective, x: Floats) -> float:
-    """Compute the rms error of a whole replay over the noise."""
-    dataset = objective.dataset
-    errors = np.concatenate(objective.errors_of(objective.parameters.apply(objective.arm, x)))
-    return float(np.sqrt(np.sum((errors / dataset.noise) ** 2) / dataset.readings(held_out=False)))
-
-
-def _weakest_direction(objective: Objective, x: Floats) -> Floats:
-    """Find the least observable direction but for the common scale: of unit length, in priors' standard deviations."""
-    settings = objective.dataset.settings
-    first = settings.process_noise.refinement[0] * torque_scale(objective.arm, objective.dataset.runs)
-    level = _at_level(objective, x, max(first, objective.torque_noise))
-    j = jacobian(level.residual, x, np.full(len(x), settings.refining.difference)) * level.weights.prior
-    onto_scale = force_powers(objective.arm, objective.parameters) / level.weights.prior
-    length = float(np.linalg.norm(onto_scale))
-    j -= np.outer(j @ onto_scale, onto_scale) / max(length**2, LEAST_NORM)
-    _, axes = np.linalg.eigh(j.T @ j)
-    return axes[:, 1 if length and len(x) > 1 else 0]  # the scale itself comes first

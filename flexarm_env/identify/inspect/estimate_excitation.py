@@ -164,10 +164,10 @@ def _rise_against(arm: Arm, dataset: Dataset) -> Rise:
     without = error_measure(arm).brief_readings(arm, dataset)
     measured = np.concatenate([np.isfinite(run.measured[~run.train]) for run in dataset.runs])
 
-    def rise_of(changed: Arm) -> float:
+    def rise_of(changed: Arm) -> tuple[float, float]:
         pairs = zip(error_measure(changed).brief_readings(changed, dataset), without, strict=True)
         change = np.concatenate([one - other for one, other in pairs])[measured]
-        return float(np.mean(np.nan_to_num(change, nan=FAILED_ERROR, posinf=FAILED_ERROR, neginf=FAILED_ERROR) ** 2))
+        return 0.0, float(np.mean(np.nan_to_num(change, nan=FAILED_ERROR, posinf=FAILED_ERROR, neginf=FAILED_ERROR) ** 2))
 
     return rise_of
 

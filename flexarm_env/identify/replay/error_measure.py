@@ -15,7 +15,7 @@ from flexarm_env.experiments.stated import Stated
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.observer import innovation_sigma, innovation_sigmas, observer_gains
 from flexarm_env.identify.replay.readings import bounded
-from flexarm_env.identify.replay.replay import replay, whole_replay, window_observers, window_replay
+from flexarm_env.identify.replay.replay import WindowStates, replay, states_before, whole_replay, window_observers, window_replay
 from flexarm_env.identify.settings import LEAST_EXCESS
 from flexarm_env.plant.plant import Plant
 
@@ -94,8 +94,17 @@ class ErrorMeasure(Protocol):
     def brief(self, arm: Arm, dataset: Dataset) -> float:
         """Measure the held-out error in windows, cheaply, for arms that are nearly the same."""
 
-    def brief_readings(self, arm: Arm, dataset: Dataset) -> list[Floats]:
-        """Compute the held-out readings (rows, signals) of each run that the brief error judges, over their deviation."""
+    def states_before(self, arm: Arm, dataset: Dataset) -> list[WindowStates]:
+        """Estimate the states of an arm before the held-out part of each run, from which arms that are nearly the same begin."""
+
+    def brief_readings(self, arm: Arm, dataset: Dataset, begun: Sequence[WindowStates] = ()) -> list[Floats]:
+        """Compute the held-out readings (rows, signals) of each run that the brief error judges, over their deviation.
+
+        Args:
+            arm: the model.
+            dataset: the recordings.
+            begun: states of an arm that is nearly the same.
+        """
 
 
 @dataclass(frozen=True)
@@ -128,18 +137,32 @@ class WindowErrors:
             total += _squares(run.errors(windows, dataset.noise)[~run.train])
         return float(np.sqrt(total / dataset.readings(held_out=True)))
 
-    def brief_readings(self, arm: Arm, dataset: Dataset) -> list[Floats]:
+    def states_before(self, arm: Arm, dataset: Dataset) -> list[WindowStates]:
+        """Estimate the states of an arm a window before the held-out part of each run."""
+        plants = dataset.plants(arm)
+        observers = self._brief_observers(arm, plants, dataset)
+        firsts = [int(np.argmax(~run.train)) for run in dataset.runs]
+        pairs = zip(dataset.runs, firsts, strict=True)
+        return [states_before(plants[run.stated], run, dataset, observers[run.stated], first) for run, first in pairs]
+
+    def brief_readings(self, arm: Arm, dataset: Dataset, begun: Sequence[WindowStates] = ()) -> list[Floats]:
         """Compute the held-out readings (rows, signals) of each run in windows, over the noise."""
-        windows = self._brief_windows(arm, dataset)
+        windows = self._brief_windows(arm, dataset, begun)
         return [one[~run.train] / dataset.noise for run, one in zip(dataset.runs, windows, strict=True)]
 
-    def _brief_windows(self, arm: Arm, dataset: Dataset) -> Iterator[Floats]:
+    def _brief_windows(self, arm: Arm, dataset: Dataset, begun: Sequence[WindowStates] = ()) -> Iterator[Floats]:
         """Replay the held-out part of each run in windows; rows before it are left empty."""
         plants = dataset.plants(arm)
+        observers = self._brief_observers(arm, plants, dataset)
+        starts: Sequence[WindowStates | None] = begun or [None] * len(dataset.runs)
+        for run, start in zip(dataset.runs, starts, strict=True):
+            first = int(np.argmax(~run.train))
+            yield window_replay(plants[run.stated], run, dataset, observers[run.stated], first, start)
+
+    @staticmethod
+    def _brief_observers(arm: Arm, plants: Mapping[Stated, Plant], dataset: Dataset) -> dict[Stated, list[Floats]]:
         levels = dataset.settings.process_noise.windows_brief
-        observers = {stated: window_observers(arm, plant, dataset, levels)[1:] for stated, plant in plants.items()}
-        for run in dataset.runs:
-            yield window_replay(plants[run.stated], run, dataset, observers[run.stated], int(np.argmax(~run.train)))
+        return {stated: window_observers(arm, plant, dataset, levels)[1:] for stated, plant in plants.items()}
 
 
 @dataclass(frozen=True)
@@ -177,7 +200,11 @@ class InnovationErrors:
                 sigma = innovation_sigmas(plant, run, dataset, own, gain)
             yield run.errors(replay(plant, run, dataset, gain), sigma), sigma
 
-    def brief_readings(self, arm: Arm, dataset: Dataset) -> list[Floats]:
+    def states_before(self, arm: Arm, dataset: Dataset) -> list[WindowStates]:
+        """Estimate no states: innovations need the whole recordings."""
+        return []
+
+    def brief_readings(self, arm: Arm, dataset: Dataset, begun: Sequence[WindowStates] = ()) -> list[Floats]:
         """Compute the predictions (rows, signals) of each run's held-out part, over the deviation of the innovations."""
         plants, own = dataset.plants(arm), arm.constants["drive"]["torque_noise"]
         gains = {stated: observer_gains(arm, plant, dataset, own) for stated, plant in plants.items()}

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable
+from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +41,23 @@ def physical_gains(plant: Plant, dataset: Dataset, torque_noise: float, held_dri
         torque_noise: standard deviation of a torque on the hub, new in each sample [Nm].
         held_drift: of a held angle in one sample, over the noise of its sensor.
     """
+    of_data = (dataset.noise.tobytes(), dataset.shares.tobytes(), dataset.settings.observers)
+    key = (plant.structure.key, plant.modes, plant.interval, *of_data)
+    return _designed(key, torque_noise, held_drift, _Design(plant, dataset)).copy()
+
+
+@dataclass(frozen=True)
+class _Design:
+    """What the gains of one linear arm are computed with, equal to any other: the key alone tells them apart."""
+
+    plant: Plant = field(compare=False)
+    dataset: Dataset = field(compare=False)
+
+
+@lru_cache(maxsize=64)
+def _designed(key: Hashable, torque_noise: float, held_drift: float, design: _Design) -> Floats:
+    """Compute gains, cached: arms of which the laws alone differ share them."""
+    plant, dataset = design.plant, design.dataset
     gains = np.zeros((plant.modes, plant.states, len(dataset.noise)))
     for mode in range(plant.modes):
         gains[mode] = _gain(plant, mode, dataset, torque_noise, held_drift)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,8 +60,55 @@ def whole_replay(plant: Plant, run: Run, dataset: Dataset) -> Floats:
     return replay(plant, run, dataset) if run.loop is None else loop_replay(plant, run, run.loop, dataset).readings
 
 
+@dataclass(frozen=True)
+class WindowStates:
+    """States of an arm at the beginning of one window, under each of several observers.
+
+    Attributes:
+        window: its number.
+        physical: (observers, states).
+    """
+
+    window: int
+    physical: Floats
+
+
+def window_length(dataset: Dataset) -> int:
+    """Count the samples of a window."""
+    numbers = dataset.settings.preparation
+    return max(round(numbers.window / dataset.interval), numbers.least_window_samples)
+
+
+def states_before(plant: Plant, run: Run, dataset: Dataset, observers: Sequence[Floats], first: int) -> WindowStates:
+    """Estimate the states of an arm one window before that of a sample, from replays under observers.
+
+    Args:
+        plant: a compiled arm.
+        run: the recording.
+        dataset: to which the run belongs.
+        observers: the kernel's gains of each replay.
+        first: the sample.
+    """
+    length = window_length(dataset)
+    window = max(first // length - 1, 0)
+    part, states = slice(0, window * length + 1), []
+    stretch, command = dataset.stretch(run), run.command
+    start = stretch.fit(plant)
+    for gains in observers:
+        stretch.place(plant, start)
+        intervals = run.intervals[part] if len(run.intervals) else run.intervals
+        plant.play(plant.delayed(command)[part], intervals, gains, run.measured[part])
+        states.append(plant.physical())
+    return WindowStates(window, np.array(states))
+
+
 def window_replay(
-    plant: Plant, run: Run, dataset: Dataset, observers: Sequence[Floats], first: int = 0, start: StartFit | None = None
+    plant: Plant,
+    run: Run,
+    dataset: Dataset,
+    observers: Sequence[Floats],
+    first: int = 0,
+    start: StartFit | WindowStates | None = None,
 ) -> Floats:
     """Replay a run freely in windows from estimated states.
 
@@ -73,23 +121,25 @@ def window_replay(
         dataset: to which the run belongs.
         observers: the kernel's gains of each replay.
         first: first sample of interest; windows before it are left empty.
-        start: the initial state; fitted if left out.
+        start: the initial state; fitted if left out. Or states under each observer of an arm that is nearly the same, later on.
 
     Returns:
         The readings (samples, signals), SI units.
     """
-    numbers = dataset.settings.preparation
-    length = max(round(numbers.window / dataset.interval), numbers.least_window_samples)
+    length = window_length(dataset)
     begins = range(0, len(run.command), length)
     best = np.full(len(begins), np.inf)
     out = np.empty_like(run.measured)
+    later = start if isinstance(start, WindowStates) and start.physical.shape[1] == plant.states else None
     stretch = dataset.stretch(run)
-    start = stretch.fit(plant) if start is None else start
-    stretch.place(plant, start)
+    stretch.place(plant, start if isinstance(start, StartFit) else stretch.fit(plant))
     began, command = plant.state.copy(), plant.delayed(run.command)
-    for gains in observers:
+    for number, gains in enumerate(observers):
         plant.state[:] = began
-        for w, begin in enumerate(begins):
+        if later is not None:
+            sample = later.window * length
+            plant.place(later.physical[number], float(command[max(sample - 1, 0)]), float(run.time[sample]))
+        for w, begin in list(enumerate(begins))[0 if later is None else later.window :]:
             part = slice(begin, begin + length + 1)
             intervals = run.intervals[part] if len(run.intervals) else run.intervals
             state = plant.state.copy()

@@ -14,8 +14,9 @@ from flexarm_env.identify.select.signatures import Baseline
 from flexarm_env.identify.select.starts import candidates, sized, starts_of
 from flexarm_env.identify.settings import DetectionLimits
 
-#: Rise of the squared error over noise in windows that an arm with one effect more makes.
-Rise = Callable[[Arm], float]
+#: Rise of the squared error over noise in windows that an arm with one effect more makes: the part that grows with the effect's
+#: size, and the part that grows with its square.
+Rise = Callable[[Arm], tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -74,14 +75,20 @@ class EffectSize:
         left, count = self.base.unexplained(change), objective.dataset.readings(held_out=False)
         return float(np.sum(change**2) / count), float(np.sum(left**2) / count)
 
-    def stepped(self, wanted: float, rise: float) -> EffectSize:
-        """Scale the size to where a variance that grows with its square is as wanted, or half way between known sizes.
+    def stepped(self, wanted: float, square: float, linear: float = 0.0) -> EffectSize:
+        """Scale the size to where a variance is as wanted, or half way between known sizes.
 
         A limit of the command or a stiff joint has no such growth: up to some size it changes nothing.
+
+        Args:
+            wanted: the variance.
+            square: the part of the present one that grows with the size's square.
+            linear: the part that grows with the size.
         """
-        factor = math.sqrt(wanted / max(rise, self.numbers.least_change))
+        half, most = 0.5 * linear, max(square, self.numbers.least_change)
+        factor = (math.sqrt(half**2 + most * wanted) - half) / most
         multiple = self.multiple * min(max(factor, 1.0 / self.numbers.step_down), self.numbers.step_up)
-        low, high = (self.multiple, self.high) if rise < wanted else (self.low, self.multiple)
+        low, high = (self.multiple, self.high) if square + linear < wanted else (self.low, self.multiple)
         if not low < multiple < high:
             multiple = math.sqrt(low * high)
         return replace(self, multiple=multiple, low=low, high=high)
@@ -157,11 +164,12 @@ def _by_windows(size: EffectSize, wanted: float, share: float, rise_of: Rise) ->
     """
     before, last, rises, close = size, math.inf, False, size.numbers.close
     for _ in range(size.numbers.window_steps):
-        rise = rise_of(size.arm)
+        linear, square = rise_of(size.arm)
+        rise = linear + square
         if size.multiple < before.multiple and rise >= last:
             return before
         rises = rises or rise > 0.0
-        before, last, size = size, rise, size.stepped(wanted, share * rise)
+        before, last, size = size, rise, size.stepped(wanted, share * square, share * linear)
         if size.factor_from(before) < (close if size.is_bracketed else math.log(size.numbers.step_up) - close):
             break
     return size if rises else None

@@ -1,0 +1,88 @@
+"""The levels of process noise that one calibration goes through, each from the slopes of the one before."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexarm_env.arm import Arm
+from flexarm_env.identify.calibrate.calibration import Calibration
+from flexarm_env.identify.calibrate.least_squares import Problem, Solution, StepSizes, minimise, minimise_onward
+from flexarm_env.identify.calibrate.objective import Objective, objective_at
+from flexarm_env.identify.calibrate.parameters import FitParameters
+from flexarm_env.identify.replay.dataset import Dataset
+from flexarm_env.identify.replay.start_bank import StartBank
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """Levels of process noise above an arm's own, and passes at its own.
+
+    Attributes:
+        arm: where to start.
+        dataset: the recordings.
+        parameters: the fitted values.
+        iterations: most Jacobians at each level.
+        starts: initial states of the recordings, fitted once for all levels.
+    """
+
+    arm: Arm
+    dataset: Dataset
+    parameters: FitParameters
+    iterations: int
+    starts: StartBank = field(default_factory=StartBank, repr=False, compare=False)
+
+    def run(self, levels: Sequence[float], passes: int) -> Calibration:
+        """Calibrate through levels [Nm], then at the arm's own torque noise.
+
+        What is left of both is skipped once an arm is near the noise, where its error is smooth. The last pass is narrow.
+
+        Args:
+            levels: of process noise.
+            passes: at the arm's own; none where a level is all that is wanted.
+        """
+        own, settings = self.arm.constants["drive"]["torque_noise"], self.dataset.settings
+        x = self.parameters.position(self.arm)
+        steps = self.parameters.step_sizes(x, settings.parameters)
+        found: tuple[Objective, Solution] | None = None
+        for noise in (*levels, *(passes - 1) * (own,)):
+            here = self._objective(x, own) if passes else None
+            if here is not None and here.excess_factor < settings.errors.nothing_left:
+                break
+            objective = here if here is not None and noise == own else self._objective(x, noise)
+            found = objective, self._minimise(objective, x, steps, found)
+            x, steps = found[1].x, found[1].steps
+        if passes:
+            objective = self._objective(x, own)
+            found = objective, self._narrow(objective, x, steps)
+        assert found is not None
+        return Calibration(self.parameters.apply(self.arm, found[1].x), found[1], found[0])
+
+    def _objective(self, x: Floats, torque_noise: float) -> Objective:
+        """Build an objective that weighs errors by those at x."""
+        objective = objective_at(self.arm, self.dataset, self.parameters, torque_noise)
+        return replace(objective, starts=self.starts).weighted_by(self.parameters.apply(self.arm, x))
+
+    def _minimise(self, objective: Objective, x: Floats, steps: StepSizes, before: tuple[Objective, Solution] | None) -> Solution:
+        """Minimise at one level, from the slopes of the level before."""
+        numbers, prior, tolerance = self.dataset.settings.least_squares, objective.weights.prior, self._tolerance(last=False)
+        if before is None:
+            return minimise(objective.residual, x, prior, steps, numbers, self.iterations, tolerance)
+        sigma, begun = before[0].weights.sigma / objective.weights.sigma, before[1].jacobian
+        problem = Problem(objective.residual, prior, numbers, tolerance)
+        return minimise_onward(problem, x, begun * objective.rows_of(sigma)[:, None], steps, self.iterations)
+
+    def _narrow(self, objective: Objective, x: Floats, steps: StepSizes) -> Solution:
+        """Minimise over narrow differences."""
+        numbers, prior, tolerance = self.dataset.settings.least_squares, objective.weights.prior, self._tolerance(last=True)
+        narrow = steps.narrowed(numbers.narrow)
+        return minimise(objective.residual, x, prior, narrow, numbers, self.iterations, tolerance)
+
+    def _tolerance(self, last: bool) -> float:
+        numbers = self.dataset.settings.calibrating
+        return numbers.final_tolerance if last else numbers.tolerance
