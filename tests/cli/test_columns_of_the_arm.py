@@ -130,7 +130,8 @@ def test_a_map_that_makes_no_sense_is_refused_for_plain_files_too(flexarm, tmp_p
 def test_the_lab_reads_by_the_same_rule_and_says_so(tmp_path):
     arm = Arm.load(arm_file(tmp_path, time=TIME, current=CURRENT, arm_angle=TURNED))
     content = recording(tmp_path, OWN, "".join(f"{k / 10},{k % 3},{k / 7}\n" for k in range(60))).read_bytes()
-    assert read_upload(arm, "run.csv", content, None, []).signals["arm_angle"][7] == -1
+    (recorded,) = read_upload(arm, "run.csv", content, None, [])
+    assert recorded.signals["arm_angle"][7] == -1
     session = Session(arm)
     (line,) = session.upload([("run.csv", content)])
     assert line == "run.csv: read by the arm's [columns]; its own header differs in arm_angle"

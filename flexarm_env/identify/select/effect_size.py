@@ -89,7 +89,7 @@ class EffectSize:
         factor = (math.sqrt(half**2 + most * wanted) - half) / most
         multiple = self.multiple * min(max(factor, 1.0 / self.numbers.step_down), self.numbers.step_up)
         low, high = (self.multiple, self.high) if square + linear < wanted else (self.low, self.multiple)
-        if not low < multiple < high:
+        if not low <= multiple <= high:
             multiple = math.sqrt(low * high)
         return replace(self, multiple=multiple, low=low, high=high)
 
