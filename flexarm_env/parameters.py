@@ -100,7 +100,7 @@ DRIVE = {
         "1/rad", 0.0, 1e6, 0.01, spread=0.15, meaning="duty by 1 rad and a firmware gain of 1 (position drive only)"
     ),
     "supply_voltage": Parameter("V", 0.0, 1e6, 0.0, spread=0.0, meaning="voltage at a duty of 1 (position and voltage drive)"),
-    "largest_duty": Parameter("", 0.0, 1.0, 1.0, spread=0.0, meaning="share of the supply that the servo gives out at most"),
+    "largest_duty": Parameter("", 1e-3, 1.0, 1.0, spread=0.0, meaning="share of the supply that the servo gives out at most"),
     "current_limit": Parameter("A", 0.0, 1e6, 0.0, spread=0.0, meaning="of the servo's firmware; 0: none"),
     "enabled": Parameter("", 0.0, 1.0, 1.0, spread=0.0, meaning="1: the drive is on; 0: the motor's circuit is open"),
     "limit": Parameter("", 0.0, 1e6, 5.0, spread=0.0, meaning="largest command, in A, V, Nm or rad", source="thesis section 4.2"),
