@@ -137,6 +137,10 @@ def _check_drive(command: str, given: Mapping[str, Any], drive: Mapping[str, flo
         raise InputError(
             f'drive.resistance is missing or below {LEAST_RESISTANCE:g} ohm: {command} drive needs it, as "1.35 ohm"'
         )
+    if drive["enabled"] not in (0.0, 1.0):
+        raise InputError(
+            f"drive.enabled = {drive['enabled']:g}; write 1 for a drive that is on, 0 for a motor with an open circuit"
+        )
     for key in ("proportional", "error_gain", "supply_voltage"):
         if command == "position" and drive[key] <= 0.0:
             raise InputError(f"drive.{key} is missing or 0: the servo of a position drive needs it")

@@ -37,16 +37,14 @@ def structure_of_constants(constants: Constants, command: str) -> Structure:
         resistance=drive["resistance"] if command in ("voltage", "position") else 0.0,
         motor_viscous_share=drive["motor_viscous_share"],
         gear_compliance=1.0 / drive["gear_stiffness"] if drive["gear_stiffness"] > 0.0 else 0.0,
-        efficiency=drive["efficiency"],
+        efficiency=drive["efficiency"] * drive["enabled"],  # an open circuit carries no current, whatever the voltage
         command_gain=drive["amplifier_gain"] or 1.0,
         supply_voltage=drive["supply_voltage"],
         front_inertia=hub if joint else 0.0,
     )
     if beam:
-        structure.elements, structure.length = int(beam["elements"]), beam["length"]
-        structure.mass_per_length, structure.bending_stiffness = beam["mass_per_length"], beam["bending_stiffness"]
-        structure.tip_mass, structure.tip_inertia = beam["tip_mass"], beam["tip_inertia"]
-    if command == "position":
+        _add_beam(structure, beam)
+    if command == "position" and drive["enabled"]:
         _add_servo(structure, drive)
     if link:
         structure.hub_inertia += link["inertia"]
@@ -55,6 +53,13 @@ def structure_of_constants(constants: Constants, command: str) -> Structure:
         structure.has_joint = True
         structure.gear_compliance, structure.gear_damping_time = 1.0 / joint["stiffness"], joint["damping"] / joint["stiffness"]
     return structure
+
+
+def _add_beam(structure: Structure, beam: Mapping[str, float]) -> None:
+    """Fix a beam to the hub."""
+    structure.elements, structure.length = int(beam["elements"]), beam["length"]
+    structure.mass_per_length, structure.bending_stiffness = beam["mass_per_length"], beam["bending_stiffness"]
+    structure.tip_mass, structure.tip_inertia = beam["tip_mass"], beam["tip_inertia"]
 
 
 def _add_servo(structure: Structure, drive: Mapping[str, float]) -> None:

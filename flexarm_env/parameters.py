@@ -13,7 +13,7 @@ from flexarm_env.errors import InputError
 #: SI unit of each kind of command.
 INPUTS: dict[str, str] = {"current": "A", "voltage": "V", "torque": "N*m", "position": "rad"}
 #: Parts that an effect or a sensor may need of an arm, beside its input.
-NEEDS = ("beam", "tip", "soft_gears", "motor", "motor_inertia", "hub_inertia", "supply")
+NEEDS = ("beam", "tip", "soft_gears", "windup", "motor", "motor_inertia", "hub_inertia", "supply")
 
 
 @dataclass(frozen=True)
@@ -100,8 +100,9 @@ DRIVE = {
         "1/rad", 0.0, 1e6, 0.01, spread=0.15, meaning="duty by 1 rad and a firmware gain of 1 (position drive only)"
     ),
     "supply_voltage": Parameter("V", 0.0, 1e6, 0.0, spread=0.0, meaning="voltage at a duty of 1 (position and voltage drive)"),
-    "largest_duty": Parameter("", 0.0, 1.0, 1.0, spread=0.0, meaning="share of the supply that the servo gives out at most"),
+    "largest_duty": Parameter("", 1e-3, 1.0, 1.0, spread=0.0, meaning="share of the supply that the servo gives out at most"),
     "current_limit": Parameter("A", 0.0, 1e6, 0.0, spread=0.0, meaning="of the servo's firmware; 0: none"),
+    "enabled": Parameter("", 0.0, 1.0, 1.0, spread=0.0, meaning="1: the drive is on; 0: the motor's circuit is open"),
     "limit": Parameter("", 0.0, 1e6, 5.0, spread=0.0, meaning="largest command, in A, V, Nm or rad", source="thesis section 4.2"),
     "torque_noise": Parameter(
         "N*m", 0.0, 1e4, 0.0, spread=0.0, meaning="unmodelled disturbance torque at the hub, standard deviation per sample"
@@ -178,6 +179,7 @@ DEFAULTS: dict[str, dict[str, float]] = {
         "supply_voltage": 0.0,
         "largest_duty": 1.0,
         "current_limit": 0.0,
+        "enabled": 1.0,
         "limit": 0.0,
         "torque_noise": 0.0,
         "gear_stiffness": 0.0,

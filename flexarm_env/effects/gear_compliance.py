@@ -22,7 +22,7 @@ class GearCompliance(Effect):
     looks_like = "motor speed shows a fast vibration against the arm"
     confused_with = ("backlash", "beam_damping", "root_compliance", "higher_modes")
     source = "Spong, J. Dyn. Syst. Meas. Control 109 (1987) 310"
-    needs = ("motor_speed", "motor_inertia", "hub_inertia")
+    needs = ("windup", "motor_inertia", "hub_inertia")
 
     @staticmethod
     def structure(structure: Structure, stiffness: float, damping_time: float) -> None:

@@ -48,3 +48,14 @@ def test_an_effect_is_recovered_from_its_own_recordings(effect, machine, truth, 
     assert found.error["final"] < 1.15
     for key, value in truth.items():
         assert found.arm.effects[effect][key] == pytest.approx(value, rel=accuracy), key
+
+
+def test_a_servo_s_gears_show_their_compliance_without_a_tachometer():
+    arm = servo(proportional=3000.0).with_effect("viscous", coefficient=0.004)
+    arm = arm.with_values({"link.tilt": 0.0, "drive.limit": 0.5})
+    hidden = arm.with_effect("gear_compliance", stiffness=40.0, damping_time=1e-3)
+    runs = [simulate(hidden, input, duration=4.0, rate=500.0, seed=seed) for seed, input in enumerate(("square", "pulse"))]
+    found = add("gear_compliance", arm, runs, jobs=1)
+    assert found.error["final"] < 1.15
+    resonance = [one.linearise("moving", 0.002).vibrations()[0][-1] for one in (hidden, found.arm)]
+    assert resonance[1] == pytest.approx(resonance[0], rel=0.02)

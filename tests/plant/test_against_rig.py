@@ -25,6 +25,7 @@ HIDDEN = {
     "friction_warmup": ({"warm": 0.35, "warm_tau": 4.0}, {"share": 0.35, "time_constant": 4.0}),
     "base_tilt": ({"tilt": 0.02, "tilt_dir": -0.7}, {"torque": TILTED, "uphill": math.pi - 0.7}),
     "rate_limit": ({"rate": 100.0}, {"rate": 100.0}),
+    "end_stop": ({"stop": 5.0, "stop_at": 0.4}, {"stiffness": 5.0, "upper": 0.4, "lower": -0.4, "damping_time": 0.0}),
     "gear_compliance": ({"gearc": 300.0}, {"stiffness": 300.0, "damping_time": 2.0 / 300.0}),
 }
 

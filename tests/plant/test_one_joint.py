@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from one_joint import elastic_joint, pendulum, servo
+from one_joint import LINK, elastic_joint, pendulum, servo
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
@@ -309,3 +309,15 @@ def test_a_pendulum_has_derivatives():
         ends = [simulate(arm.with_values({path: arm.value(path) + s * size}), run, noise=False) for s in (1.0, -1.0)]
         expected = (ends[0].signals["arm_angle"] - ends[1].signals["arm_angle"]) / (2.0 * size)
         assert np.abs(slopes[path]["arm_angle"] - expected).max() < 1e-4 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("command", ["voltage", "position"])
+def test_a_drive_that_is_off_neither_drives_nor_brakes(command):
+    drive = dict(servo().constants["drive"]) if command == "position" else dict(elastic_joint().constants["drive"])
+    table = {"drive": {"input": command, **drive, "enabled": 0}, "link": LINK, "sensors": {"arm_angle": {}, "motor_speed": {}}}
+    plant = Arm.from_table(table, "off").plant(INTERVAL)
+    plant.place(np.array([0.01, 0.0]))
+    inertia = 0.025 + drive["gear_ratio"] ** 2 * drive["motor_inertia"]
+    angle = plant.replay(np.full(4000, 1.0))[:, 0]
+    assert period(angle) == pytest.approx(2.0 * np.pi * np.sqrt(inertia / (0.5 * 0.2 * GRAVITY)), rel=1e-4)
+    assert np.abs(angle[-1000:]).max() == pytest.approx(0.01, rel=1e-3)

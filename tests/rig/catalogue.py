@@ -39,6 +39,8 @@ CATALOGUE = {
     "pot_nonlinearity": "potnl",
     "sensor_offset": "off_mid",
     "time_offset": "late",
+    "fixture_compliance": "fix_j",
+    "end_stop": "stop",
 }
 
 #: a plain size of each effect of the catalogue
@@ -78,12 +80,13 @@ EXAMPLES: dict[str, dict[str, float]] = {
     "pot_nonlinearity": {"potnl": 0.03},
     "sensor_offset": {"off_mid": 0.08, "off_base": -0.06},
     "time_offset": {"late": 0.012},
+    "fixture_compliance": {"fix_j": 0.05, "fix_f": 14.0},
+    "end_stop": {"stop": 5.0, "stop_at": 0.4},
 }
 
 #: effects that the catalogue does not hold: the right verdict is "unknown" (or a near relative, said with care)
 OUTSIDE: dict[str, dict[str, float]] = {
     "hum": {"hum": 0.12, "humf": 6.0},
-    "fixture": {"fix_j": 0.05, "fix_f": 14.0},
     "torque_ripple": {"torque_ripple": 0.15, "torque_ripple_n": 11.0},
     "detent": {"detent": 0.04, "detent_period": 3.3},
     "crosstalk": {"crosstalk": 0.04},
@@ -92,6 +95,5 @@ OUTSIDE: dict[str, dict[str, float]] = {
     "amp_hysteresis": {"amp_hyst": 0.3},
     "sticky_spot": {"spot": 0.25},
     "gage_creep": {"creep": 0.12},
-    "end_stop": {"stop": 5.0, "stop_at": 0.4},
     "motor_saturation": {"sag": 0.01},
 }
