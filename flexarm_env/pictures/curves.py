@@ -35,17 +35,18 @@ def _styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
     return styled
 
 
-def save(figure: Figure, stem: Path) -> list[Path]:
-    """Write a figure as PNG and SVG; return their paths.
+def save(figure: Figure, stem: Path, kinds: Sequence[str] = ("png", "svg")) -> list[Path]:
+    """Write a figure as PNG and SVG, or one of them; return their paths.
 
     Raises:
         InputError: if the place cannot be written.
     """
-    paths = [stem.with_suffix(".png"), stem.with_suffix(".svg")]
+    metadata = {"png": {"Software": None}, "svg": {"Date": None, "Creator": "FlexArm"}}
+    paths = [stem.with_suffix(f".{kind}") for kind in kinds]
     try:
         with matplotlib.rc_context(STYLE):
-            for path, metadata in zip(paths, ({"Software": None}, {"Date": None, "Creator": "FlexArm"}), strict=True):
-                figure.savefig(path, metadata=metadata)
+            for path, kind in zip(paths, kinds, strict=True):
+                figure.savefig(path, metadata=metadata[kind])
     except OSError as error:
         raise InputError(f"cannot write {stem}: {error.strerror}; name a folder that can be written") from None
     return paths

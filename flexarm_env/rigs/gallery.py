@@ -50,7 +50,7 @@ def run(
     progress: ProgressCallback | None = None,
     answered: Answered | None = None,
 ) -> list[dict[str, Any]]:
-    """Examine rigs; write `NAME.json`, `NAME.toml`, `NAME.png` and `NAME.svg` of each. Answers that still hold are kept.
+    """Examine rigs; write `NAME.json`, `NAME.toml` and `NAME.png` of each. Answers that still hold are kept.
 
     Args:
         rigs: to examine.
@@ -104,4 +104,4 @@ def _draw(found: Examined, stem: Path) -> None:
     before, after = (compare(found.arms[step], [run]) for step in ("nominal", "final"))
     added = found.diagnosis.effects
     names = ("model as given", f"with {' and '.join(added)}" if added else "refitted")
-    curves.save(curves.overlay(before, after, run.name, names), stem)
+    curves.save(curves.overlay(before, after, run.name, names), stem, ["png"])

@@ -57,7 +57,7 @@ def test_a_rig_is_diagnosed_once_and_judged_on_what_was_not_fitted(bench, tmp_pa
     assert flexarm("rigs", bench, "--output", output, "--jobs", 1) == 0
     assert flexarm.err.splitlines()[-1].startswith("bench: missing coulomb; held out ")
     assert sorted(path.name for path in output.iterdir()) == [
-        *(f"bench.{suffix}" for suffix in ("json", "png", "svg", "toml")),
+        *(f"bench.{suffix}" for suffix in ("json", "png", "toml")),
         "rigs.json",
         "rigs.md",
     ]
