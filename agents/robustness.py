@@ -114,6 +114,31 @@ def chosen(names: Sequence[str], folder: Path) -> dict[str, str | Sequence[Path]
     return {name: every[name] for name in names or every}
 
 
+def result_of(
+    asked: argparse.Namespace, agents: Mapping[str, Any], values: Mapping[str, Mapping[str, Values]], seconds: float
+) -> dict[str, Any]:
+    """Gather cells and verdicts, and how they were made."""
+    policies = [name for name, who in agents.items() if not isinstance(who, str)]
+    words = [*asked.names, "--arm", asked.arm, "--count", str(asked.count), *["--development"] * asked.development]
+    return {
+        "command": " ".join(["python -m agents.robustness", *words]),
+        "version": __version__,
+        "commit": commit(),
+        "seed": first_seed_of(asked),
+        "arms": asked.count,
+        "seconds": round(seconds, 1),
+        "sets": {name: found.meaning for name, found in ROBUSTNESS.items()},
+        "policies": policies,
+        "cells": {arms: {name: cell_of(found) for name, found in each.items()} for arms, each in values.items()},
+        "verdicts": {arms: verdict_of(each, policies) for arms, each in values.items()},
+    }
+
+
+def first_seed_of(asked: argparse.Namespace) -> int:
+    """Look up the seed of the first arm of a set."""
+    return DEVELOPMENT_SEED if asked.development else FIRST_SEED
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Compare, write JSON and Markdown, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.robustness", description=__doc__)
@@ -125,29 +150,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--jobs", type=int, default=2, help="processes; 2 by default")
     parser.add_argument("--save", type=Path, default=FOLDER, help="folder of the results; results/robustness by default")
     asked = parser.parse_args(arguments)
-    began, first_seed = time.perf_counter(), DEVELOPMENT_SEED if asked.development else FIRST_SEED
+    began = time.perf_counter()
     try:
         if asked.count < 1 or asked.jobs < 1:
             raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
         agents = chosen(asked.names, asked.policies)
-        values = evaluate(agents, asked.arm, asked.count, first_seed, asked.jobs)
+        values = evaluate(agents, asked.arm, asked.count, first_seed_of(asked), asked.jobs)
     except InputError as error:
         print(error, file=sys.stderr)
         return 2
-    policies = [name for name, who in agents.items() if not isinstance(who, str)]
-    words = [*asked.names, "--arm", asked.arm, "--count", str(asked.count), *["--development"] * asked.development]
-    result = {
-        "command": " ".join(["python -m agents.robustness", *words]),
-        "version": __version__,
-        "commit": commit(),
-        "seed": first_seed,
-        "arms": asked.count,
-        "seconds": round(time.perf_counter() - began, 1),
-        "sets": {name: found.meaning for name, found in ROBUSTNESS.items()},
-        "policies": policies,
-        "cells": {arms: {name: cell_of(found) for name, found in each.items()} for arms, each in values.items()},
-        "verdicts": {arms: verdict_of(each, policies) for arms, each in values.items()},
-    }
+    result = result_of(asked, agents, values, time.perf_counter() - began)
     asked.save.mkdir(parents=True, exist_ok=True)
     write_whole(asked.save / "robustness.json", json.dumps(result, indent=1, ensure_ascii=False) + "\n")
     write_whole(asked.save / "robustness.md", report_of(result))

@@ -70,7 +70,6 @@ def tune(
     """
     space = space_of(controller)
     law(controller, arm, {})(1.0 / CONTROL_RATE)  # refuses an arm that lacks a signal before the search
-
     cells = judge.cells_of(arm, budget.arms, budget.seed)
 
     def objective(values: Values) -> float:
@@ -82,7 +81,7 @@ def tune(
         return found if measured_margins(controller, arm, options) else found + UNSTABLE
 
     first = first_values(controller, arm, space, start)
-    digest = hashlib.sha256(f"{arm_text(arm)} {first}".encode()).hexdigest()[:12]
+    digest = hashlib.sha256(f"{arm_text(arm)} {first} {cells} {space}".encode()).hexdigest()[:12]
     study = Study(f"{controller} {digest} {budget.arms} {budget.seed}", space, journal)
     study.run(budget.trials, budget.seed, objective, first, report)
     values, least = study.best()

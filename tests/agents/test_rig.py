@@ -11,14 +11,17 @@ pytest.importorskip("stable_baselines3")
 
 from agents.goals import GOALS
 from agents.rig import Machine, drive
-from agents.rig_report import cost, less_by, verdict_of
+from agents.rig_controllers import controllers_of, tuned_place
+from agents.rig_report import less_by, verdict_of
 from agents.sim_to_rig import CASES, main, plan_of, wanted
 from flexarm_env import Arm
 from flexarm_env.controllers import make_controller
+from flexarm_env.controllers.tuned import TunedController
 from flexarm_env.effects import catalogue
 from flexarm_env.tasks import TASKS
 from flexarm_env.trials.measures import MEASURES, measure
 from flexarm_env.trials.rollout import roll_out
+from flexarm_env.trials.score import cost
 from flexarm_env.trials.sets import SETS
 from tests.rig import CATALOGUE, simulate
 
@@ -57,6 +60,21 @@ def test_the_corrected_arm_s_policies_are_trained_as_the_nominal_one_s(tmp_path)
         corrected = plans[f"corrected-{case}"].table()
         assert corrected.pop("arm").endswith(f"{case}.toml")
         assert corrected == {key: value for key, value in nominal.items() if key != "arm"}
+
+
+def test_each_law_is_made_and_tuned_for_both_arms(tmp_path) -> None:
+    (tmp_path / "arms").mkdir()
+    Arm.load("thesis-fem").with_effect("constant_torque", torque=0.1).save(tmp_path / "arms" / "bias.toml")
+    for kind, gain in (("nominal", 2.0), ("bias", 6.0)):
+        place = tuned_place(tmp_path, "pd", kind)
+        place.parent.mkdir(exist_ok=True)
+        TunedController("pd", kind, "0.1.0", {"proportional": gain}).save(place)
+    found = controllers_of(tmp_path, "bias")
+    assert {"pd, nominal", "pd, corrected", "lqg, corrected", "pd tuned, nominal", "pd tuned, corrected"} <= set(found)
+    assert "lqg tuned, corrected" not in found  # not made
+    (nominal,), (corrected,) = found["pd tuned, nominal"], found["pd tuned, corrected"]
+    assert (nominal.proportional, corrected.proportional) == (2.0, 6.0)
+    assert nominal.loads.torque == 0.0 != corrected.loads.torque
 
 
 def test_the_cost_is_the_logarithm_of_the_geometric_mean() -> None:
