@@ -67,13 +67,19 @@ class Calibrator:
         x = parameters.position(arm)
         steps = parameters.step_sizes(x, self.settings.parameters)
         solution = Solution(x, np.inf, np.zeros(0), np.zeros((0, len(x))), steps)
-        return Calibration(arm, solution, objective_at(arm, self.dataset, parameters, 0.0))
+        return Calibration(arm, solution, objective_at(arm, self.dataset, parameters, arm.constants["drive"]["torque_noise"]))
 
     def calibrate_constants(self) -> Calibration:
-        """Calibrate the nominal constants; only at the arm's own torque noise where more feedback gains nothing."""
+        """Calibrate the nominal constants; only at the arm's own torque noise where more feedback gains nothing.
+
+        They stay as given where calibrated ones are worse on the held-out part: these make up for something else.
+        """
         before = self.score(self.nominal, held_out=False)
         found, after = self.calibrate_by_best_schedule(self.nominal)
-        return found if after.windows <= before.windows else self.calibrate(self.nominal, levels=())
+        if after.windows > before.windows:
+            found = self.calibrate(self.nominal, levels=())
+        is_worse = self.score(found.arm).windows > self.score(self.nominal).windows
+        return self.uncalibrated(self.nominal) if is_worse else found
 
     def choose_hold_out(self) -> tuple[Calibrator, Calibration]:
         """Hold out less where the calibrated constants show a missing effect that appears late in the recordings.
