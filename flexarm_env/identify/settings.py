@@ -325,10 +325,10 @@ class ProcessNoise:
         (0.003,), "Level of a brief calibration.", "the middle level of `calibration`; one level saves time"
     )
     refinement: tuple[float, ...] = tuned(
-        (1e-3, 1e-4),
+        (3e-3, 3e-4, 3e-5),
         "Levels of the final Gauss–Newton steps.",
-        "a practice recording without a fault: cost 58 848 after 75 residuals; with 3e-3, 3e-4, 3e-5 and Jacobians computed anew "
-        "58 832 after 838; with 3e-4 and 3e-5 59 097",
+        "motor inertias of null-38, null-45 and null-58 were 10, 11 and 15 % off, then 3, 0 and 10 %; with 1e-3 and 1e-4 alone "
+        "one of two starts far from the minimum of a simulated square wave ended at 1.14 times the noise",
     )
     refinement_aside: tuple[float, ...] = tuned(
         (3e-4, 3e-5),
@@ -544,6 +544,12 @@ class Refining:
         1e-5,
         "Step of the differences.",
         "motor inertias of null-38, null-45 and null-58 were 10, 11 and 15 % off, then 3, 0 and 10 %; no sweep recorded",
+    )
+    iterations: int = tuned(5, "Jacobians at each level at most.", "from starts aside, three are needed; no sweep recorded")
+    tolerance: float = tuned(
+        1e-2,
+        "Relative decrease of the cost along a Jacobian below which no other is computed.",
+        "that of `calibrating.tolerance`; no sweep recorded",
     )
     least_promise: float = tuned(
         0.1,

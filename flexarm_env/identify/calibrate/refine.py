@@ -42,9 +42,10 @@ class Refined:
 
 
 def gauss_newton(residual: Residual, x: Floats, prior: Floats, numbers: Refining) -> Refined:
-    """Minimise |residual(x)|² + |x / prior|² by damped Gauss–Newton steps along one Jacobian, which each corrects.
+    """Minimise |residual(x)|² + |x / prior|² by damped Gauss–Newton steps, which each correct the Jacobian.
 
-    The steps end where one promises less than chance, or gives much less than it promised.
+    The steps end where one promises less than chance, or gives much less than it promised. The Jacobian is then computed anew if
+    they lowered the cost enough.
 
     Args:
         residual: whitened residual (rows,).
@@ -53,11 +54,15 @@ def gauss_newton(residual: Residual, x: Floats, prior: Floats, numbers: Refining
         numbers: differences, dampings and stopping rule.
     """
     r = residual(x)
-    j = slopes(residual, x, r, np.full(len(x), numbers.difference))
-    here, keeps = Refined(x, r, cost_of(r, x, prior), j), True
-    while keeps:
-        ahead, promised = _step(residual, here, prior, numbers)
-        keeps, here = here.cost - ahead.cost > numbers.kept * promised, ahead
+    here = Refined(x, r, cost_of(r, x, prior), None)
+    for _ in range(numbers.iterations):
+        j = slopes(residual, here.x, here.residual, np.full(len(x), numbers.difference))
+        before, here, keeps = here.cost, replace(here, jacobian=j), True
+        while keeps:
+            ahead, promised = _step(residual, here, prior, numbers)
+            keeps, here = here.cost - ahead.cost > numbers.kept * promised, ahead
+        if promised < numbers.least_promise or before - here.cost < numbers.tolerance * before:
+            break
     return here
 
 
@@ -95,9 +100,9 @@ def refine(objective: Objective, x: Floats) -> Refined:
     x, _ = best_scale(objective, x, powers)
     if not len(x) or objective.excess_factor > errors.close:
         return _at(objective, x, None)
-    first, *_, best = ends = _descend(objective, x, process_noise.refinement)
-    if best.error > errors.converged * first.error:
-        aside = dataset.settings.refining.aside * objective.weights.prior * first.weakest_direction
+    *smooth, best = ends = _descend(objective, x, process_noise.refinement)
+    if smooth and best.error > errors.converged * min(end.error for end in smooth):
+        aside = dataset.settings.refining.aside * objective.weights.prior * smooth[0].weakest_direction
         starts = (best.found.x - aside, best.found.x + aside)
         ends += [_descend(objective, start, process_noise.refinement_aside)[-1] for start in starts]
     minima = [end.found for end in ends if end.level is objective]
