@@ -46,6 +46,8 @@ class Study:
         self.space = {
             key: optuna.distributions.FloatDistribution(each.low, each.high, log=each.logarithmic) for key, each in space.items()
         }
+        if journal is not None and not journal.parent.is_dir():
+            raise InputError(f"{journal}: there is no folder {journal.parent}; make it first")
         try:
             storage = _storage(journal)
             self._study = optuna.create_study(study_name=name, storage=storage, load_if_exists=True, direction="minimize")
@@ -104,8 +106,6 @@ def _storage(journal: Path | None) -> Any:
     from optuna.storages import JournalStorage
     from optuna.storages.journal import JournalFileBackend
 
-    if not journal.parent.is_dir():
-        raise InputError(f"{journal}: there is no folder {journal.parent}; make it first")
     if journal.exists() and (not journal.is_file() or not _begins_as_journal(journal)):
         raise ValueError  # before Optuna adds a line to it
     with warnings.catch_warnings():
