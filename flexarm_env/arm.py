@@ -164,8 +164,9 @@ class Arm(Shown):
         Args:
             need: "beam", "tip" (of a beam, or of a link with a length), "soft_gears" (a joint, or gears whose stiffness is
                 stated), "windup" (shown by the motor's speed, or by a servo, which closes its loop around the motor), "motor"
-                (with constants of its own: any drive but torque), "motor_inertia", "hub_inertia" (or a beam or link), "supply"
-                (a voltage that is stated), the name of a signal, "strain" for any strain gage, or the drive's input.
+                (with constants of its own: any drive but torque), "amplifier" (any drive but a servo), "motor_inertia",
+                "hub_inertia" (or a beam or link), "supply" (a voltage that is stated), the name of a signal, "strain" for any
+                strain gage, or the drive's input.
 
         Example:
             >>> Arm.load("cu-rigid").has("beam"), Arm.load("thesis").has("strain")
@@ -183,6 +184,8 @@ class Arm(Shown):
             return self.input == "position" or "motor_speed" in self.sensors
         if need == "motor":
             return self.input != "torque"
+        if need == "amplifier":
+            return self.input != "position"
         if need == "supply":
             return self.constants["drive"]["supply_voltage"] > 0.0
         if need in INPUTS:

@@ -13,7 +13,7 @@ from flexarm_env.errors import InputError
 #: SI unit of each kind of command.
 INPUTS: dict[str, str] = {"current": "A", "voltage": "V", "torque": "N*m", "position": "rad"}
 #: Parts that an effect or a sensor may need of an arm, beside its input.
-NEEDS = ("beam", "tip", "soft_gears", "windup", "motor", "motor_inertia", "hub_inertia", "supply")
+NEEDS = ("beam", "tip", "soft_gears", "windup", "motor", "amplifier", "motor_inertia", "hub_inertia", "supply")
 
 
 @dataclass(frozen=True)

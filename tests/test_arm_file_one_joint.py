@@ -71,4 +71,5 @@ def test_an_arm_says_what_it_has():
     assert [arm.has("soft_gears") for arm in (elastic_joint(), pendulum(), Arm.load("thesis-fem"))] == [True, False, True]
     assert [arm.has("supply") for arm in (servo(), elastic_joint())] == [True, False]
     assert [arm.has("motor") for arm in (servo(), pendulum())] == [True, False]
+    assert [arm.can_have("current_lag") for arm in (servo(), pendulum())] == [False, True]
     assert [arm.has("windup") for arm in (servo(), elastic_joint(), Arm.load("emps"))] == [True, True, False]

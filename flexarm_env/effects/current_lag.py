@@ -17,6 +17,7 @@ class CurrentLag(Effect):
     parameters: ClassVar = {"time": Parameter("s", 0.0, 1.0, 0.01, null=0.0, meaning="t_l, time constant")}
     looks_like = "all signals follow fast commands late and smoothed"
     confused_with = ("input_delay", "time_offset", "rate_limit")
+    needs = ("amplifier",)
 
     @staticmethod
     def structure(structure: Structure, time: float) -> None:
