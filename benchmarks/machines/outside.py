@@ -15,11 +15,6 @@ from benchmarks.machines.scales import (
 
 OUTSIDE: dict[str, Hidden] = {
     "hum": detailed("hum", "", of_torque(0.2), lambda m: {"humf": (3.0, 9.0), "humphi": PHASE}),
-    "fixture": Hidden(
-        lambda m: 0.05,
-        lambda m, size, details: {"fix_j": m.inertia / size, "fix_f": details["frequency"]},
-        lambda m: {"frequency": (5.0, 18.0)},
-    ),
     "torque_ripple": detailed(
         "torque_ripple", "", lambda m: 0.8, lambda m: {"torque_ripple_n": motor_cycles(m, 4.0, 24.0)}, possible=rotary
     ),

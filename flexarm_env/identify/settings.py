@@ -327,13 +327,12 @@ class ProcessNoise:
     refinement: tuple[float, ...] = tuned(
         (3e-3, 3e-4, 3e-5),
         "Levels of the final Gauss–Newton steps.",
-        "motor inertias of null-38, null-45 and null-58 were 10, 11 and 15 % off, then 3, 0 and 10 %; with 1e-3 and 1e-4 alone "
-        "one of two starts far from the minimum of a simulated square wave ended at 1.14 times the noise",
+        "with 1e-3 and 1e-4 alone one of two starts far from the minimum of a simulated square ended at 1.14 times the noise",
     )
     refinement_aside: tuple[float, ...] = tuned(
         (3e-4, 3e-5),
         "Levels of those that begin to either side.",
-        "practice recordings with Stribeck friction: hub inertia 3 % off, 7 % with 1e-4 alone, 20 % without",
+        "practice recordings with Stribeck friction: hub inertia 1.4 % off; other levels were tried with earlier steps only",
     )
     screening: tuple[float, ...] = tuned(
         (0.01, 0.003, 0.001, 0.0003),
@@ -545,7 +544,7 @@ class Refining:
         "Step of the differences.",
         "motor inertias of null-38, null-45 and null-58 were 10, 11 and 15 % off, then 3, 0 and 10 %; no sweep recorded",
     )
-    iterations: int = tuned(5, "Jacobians at each level at most.", "from starts aside, three are needed; no sweep recorded")
+    iterations: int = tuned(5, "Jacobians at each level at most.", "no sweep recorded")
     tolerance: float = tuned(
         1e-2,
         "Relative decrease of the cost along a Jacobian below which no other is computed.",
