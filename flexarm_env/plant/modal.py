@@ -102,7 +102,9 @@ def _inverse(mass: Matrix) -> Matrix:
     except np.linalg.LinAlgError:
         inverse = np.full_like(mass, np.inf)
     if not (np.abs(inverse) < LARGEST_INVERSE).all():
-        raise InputError("a body of the arm has no inertia, and any torque would move it beyond all: raise hub.inertia")
+        raise InputError(
+            "a body of the arm has no inertia, and any torque would move it beyond all: raise hub.inertia or link.inertia"
+        )
     return inverse
 
 

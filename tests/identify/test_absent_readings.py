@@ -98,7 +98,7 @@ def test_readings_out_of_their_window_change_no_other_error(arm, run):
 def test_an_absent_reading_corrects_nothing(arm, run):
     """Until a reading comes, a corrected replay is a free one, whatever the gains; then it is not."""
     reduced, data = prepare(arm, [ignored(run, ALL, 0.3, 1.0)])
-    one, plant = data.runs[0], data.plants(reduced)[0.0]
+    one, plant = data.runs[0], data.plants(reduced)[()]
     gains = observer_gains(reduced, plant, data, 0.05)
     dropped = prepare(arm, [ignored(run, ALL, 0.3, 9.0)])[1].runs[0]
     corrected, lost = replay(plant, one, data, gains), replay(plant, dropped, data, gains)
