@@ -92,7 +92,7 @@ def test_an_arm_without_a_beam_cannot_carry_it():
     signals = {"arm_angle": np.sin(time)}
     told = Recording.from_arrays("run", time, "voltage", np.cos(time), signals, None, {"payload": PAYLOAD})
     for work in (compare, fit, simulate):
-        with pytest.raises(InputError, match=r"run states a payload of 0.3 kg, but arm .* has no beam"):
+        with pytest.raises(InputError, match=r"run states a payload of 0.3 kg, but arm .* has no tip to carry it"):
             work(rigid, told if work is simulate else [told])
 
 
