@@ -387,6 +387,8 @@ def _with_sidecar(recording: Recording, path: Path) -> Recording:
     twice = [name for name in stated if name in recording.conditions]
     if twice:
         raise file_error(path, f"condition '{twice[0]}' comes twice, in the file and in {beside.name}; keep one of the two")
+    if not stated:
+        return recording
     note = f"{beside.name} states {', '.join(f'{name} = {value:g}' for name, value in stated.items())}"
     return replace(recording, conditions=recording.conditions | stated, notes=(*recording.notes, note))
 
