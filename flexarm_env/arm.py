@@ -14,7 +14,7 @@ from flexarm_env.display import Shown
 from flexarm_env.effects import Catalogue, Effect, catalogue
 from flexarm_env.effects.catalogue import LAW_PORTS
 from flexarm_env.errors import InputError, did_you_mean
-from flexarm_env.parameters import INPUTS, SECTIONS, Parameter, check_bounds, reading_noise
+from flexarm_env.parameters import INPUTS, NEEDS, SECTIONS, Parameter, check_bounds, reading_noise
 from flexarm_env.sensors import Sensor, known_sensors
 
 if TYPE_CHECKING:
@@ -154,7 +154,8 @@ class Arm(Shown):
         return replace(self, effects={**self.effects, name: values})
 
     def _check_needs(self, effect: type[Effect]) -> None:
-        missing = ["a strain gage" if need == "strain" else need for need in effect.needs if not self.has(need)]
+        words = NEEDS | {"strain": "a strain gage"}
+        missing = [words.get(need, need) for need in effect.needs if not self.has(need)]
         if missing:
             raise InputError(f"effect '{effect.name}' needs {' and '.join(missing)}, which arm '{self.name}' does not have")
 
@@ -165,8 +166,8 @@ class Arm(Shown):
             need: "beam", "tip" (of a beam, or of a link with a length), "soft_gears" (a joint, or gears whose stiffness is
                 stated), "windup" (shown by the motor's speed, or by a servo, which closes its loop around the motor), "motor"
                 (with constants of its own: any drive but torque), "amplifier" (any drive but a servo), "motor_inertia",
-                "hub_inertia" (or a beam or link), "supply" (a voltage that is stated), the name of a signal, "strain" for any
-                strain gage, or the drive's input.
+                "hub_inertia" (or a beam or link), "supply" (a voltage that is stated, without a sensor of the current, which is
+                not modelled behind a supply that sags), the name of a signal, "strain" for any strain gage, or the drive's input.
 
         Example:
             >>> Arm.load("cu-rigid").has("beam"), Arm.load("thesis").has("strain")
@@ -187,7 +188,7 @@ class Arm(Shown):
         if need == "amplifier":
             return self.input != "position"
         if need == "supply":
-            return self.constants["drive"]["supply_voltage"] > 0.0
+            return self.constants["drive"]["supply_voltage"] > 0.0 and "motor_current" not in self.sensors
         if need in INPUTS:
             return need == self.input
         if need == "strain":

@@ -11,7 +11,8 @@ from flexarm_env.control.table import law_from_table, law_table
 from flexarm_env.effects import Catalogue
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import read_toml, write_whole
-from flexarm_env.parameters import INPUTS, LEVEL, SECTIONS, Parameter, check_bounds, defaults_of
+from flexarm_env.parameters import DEFAULTS, INPUTS, LEVEL, NEEDS, SECTIONS, Parameter, check_bounds, defaults_of
+from flexarm_env.recordings.checks import check_conditions
 from flexarm_env.recordings.conditions import CONDITIONS
 from flexarm_env.recordings.messages import file_error
 from flexarm_env.sensors import known_sensors
@@ -124,15 +125,29 @@ def _constants(table: Mapping[str, Any]) -> tuple[str, dict[str, dict[str, float
     given = {"hub": _table(table, "hub", {} if "link" in table else None)}
     given |= {section: _table(table, section) for section in ("beam", "link", "joint") if section in table}
     constants |= {section: _section(section, values, defaults_of(section, command, table)) for section, values in given.items()}
-    _check_drive(command, drive, constants["drive"])
-    _check_bodies(constants)
+    if command == "torque" and "torque_constant" in drive:
+        raise InputError('drive.torque_constant: a torque drive has none; take it out, or write input = "current"')
+    check_constants(command, constants)
     return command, constants
 
 
-def _check_drive(command: str, given: Mapping[str, Any], drive: Mapping[str, float]) -> None:
+def check_constants(command: str, constants: Mapping[str, Mapping[str, float]]) -> None:
+    """Check that constants within their bounds make an arm together.
+
+    Args:
+        command: kind of the drive's command.
+        constants: by section and key.
+
+    Raises:
+        InputError: for a drive that lacks a constant or has one that its kind does not have, parts that exclude each other, and
+            a body without inertia.
+    """
+    _check_drive(command, constants["drive"])
+    _check_bodies(constants)
+
+
+def _check_drive(command: str, drive: Mapping[str, float]) -> None:
     """Refuse a drive that lacks a constant, or states one that its kind does not have."""
-    if command == "torque" and "torque_constant" in given:
-        raise InputError('drive.torque_constant: a torque drive has none; take it out, or write input = "current"')
     if command in ("voltage", "position") and drive["resistance"] < LEAST_RESISTANCE:
         raise InputError(
             f'drive.resistance is missing or below {LEAST_RESISTANCE:g} ohm: {command} drive needs it, as "1.35 ohm"'
@@ -144,8 +159,12 @@ def _check_drive(command: str, given: Mapping[str, Any], drive: Mapping[str, flo
     for key in ("proportional", "error_gain", "supply_voltage"):
         if command == "position" and drive[key] <= 0.0:
             raise InputError(f"drive.{key} is missing or 0: the servo of a position drive needs it")
-    for key in ("proportional", "derivative", "error_gain", "current_limit"):
-        if command != "position" and drive[key] != 0.0:
+    if command in ("current", "torque") and drive["supply_voltage"] > 0.0:
+        raise InputError(
+            f'drive.supply_voltage: a {command} drive has none; take it out, or write input = "voltage" or input = "position"'
+        )
+    for key in ("proportional", "derivative", "error_gain", "largest_duty", "current_limit"):
+        if command != "position" and drive[key] != DEFAULTS["drive"][key]:
             raise InputError(
                 f'drive.{key} is of a servo, and drive.input is "{command}": take it out, or write input = "position"'
             )
@@ -189,19 +208,20 @@ def _conditions(given: Mapping[str, Any], constants: Mapping[str, Any]) -> dict[
             raise InputError(f"conditions.{name}: unknown constant {path!r}{did_you_mean(str(path), allowed)}")
         if path in found.values():
             raise InputError(f"conditions.{name}: another condition sets '{path}', too; keep one of them")
+        check_conditions({name: 0.0})
         if name in CONDITIONS:
             raise InputError(f"conditions.{name}: every arm takes up '{name}' as it is; leave it out")
         found[name] = path
     return found
 
 
-def _table(table: Mapping[str, Any], key: str, default: dict[str, Any] | None = None) -> dict[str, Any]:
+def _table(table: Mapping[str, Any], key: str, default: dict[str, Any] | None = None, prefix: str = "") -> dict[str, Any]:
     if key not in table:
         if default is not None:
             return default
         raise InputError(f"table [{key}] is missing")
     if not isinstance(table[key], dict):
-        raise InputError(f"{key} is not a table; write [{key}]")
+        raise InputError(f"{prefix}{key} is not a table; write [{prefix}{key}]")
     found: dict[str, Any] = table[key]
     return found
 
@@ -214,7 +234,8 @@ def _refuse_unknown(prefix: str, table: Mapping[str, Any], allowed: Any) -> None
 
 def _number(path: str, value: Any, parameter: Parameter) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        raise InputError(f'{path} = {value!r} is no number; write 0.5 or "0.5 {parameter.unit}"')
+        written = f' or "{parameter.typical:g} {parameter.unit}"' if parameter.unit else ""
+        raise InputError(f"{path} = {value!r} is no number; write for example {parameter.typical:g}{written}")
     try:
         number = quantity(value, parameter.unit)
     except InputError as error:
@@ -233,7 +254,7 @@ def _section(section: str, given: dict[str, Any], defaults: Mapping[str, float])
     values |= {key: _number(f"{section}.{key}", value, parameters[key]) for key, value in given.items()}
     for key, parameter in parameters.items():
         if key not in values:
-            raise InputError(f"{section}.{key} is missing; it is a number in {parameter.unit or 'no unit'}")
+            raise InputError(f"{section}.{key} is missing; it is a number{' in ' if parameter.unit else ''}{parameter.unit}")
     if section == "beam" and values["elements"] != int(values["elements"]):
         raise InputError(f"beam.elements = {values['elements']:g}; write a whole number")
     return values
@@ -257,7 +278,7 @@ def _sensors(given: Mapping[str, Any]) -> tuple[dict[str, dict[str, float]], lis
         raise InputError("table [sensors] is empty: name at least one signal, as [sensors.arm_angle]")
     sensors, auto_noise = {}, []
     for signal in (signal for signal in known_sensors() if signal in given):
-        table, settings = _table(given, signal), known_sensors()[signal].settings()
+        table, settings = _table(given, signal, prefix="sensors."), known_sensors()[signal].settings()
         _refuse_unknown(f"sensors.{signal}.", table, settings)
         if table.get("noise") == AUTO:
             auto_noise.append(signal)
@@ -274,7 +295,8 @@ def _check_needs(arm: Arm) -> None:
         if "beam" in missing:
             raise InputError(f"sensors.{signal} measures the beam, and the arm has none: add [beam] or leave it out")
         if missing:
-            raise InputError(f"sensors.{signal} needs {' and '.join(missing)}, which the arm does not have: leave it out")
+            words = " and ".join(NEEDS.get(need, need) for need in missing)
+            raise InputError(f"sensors.{signal} needs {words}, which the arm does not have: leave it out")
         if "beam" in arm.constants and values["position"] > arm.constants["beam"]["length"]:
             raise InputError(f"sensors.{signal}.position lies beyond the beam's end at {arm.constants['beam']['length']:g} m")
 

@@ -12,8 +12,18 @@ from flexarm_env.errors import InputError
 
 #: SI unit of each kind of command.
 INPUTS: dict[str, str] = {"current": "A", "voltage": "V", "torque": "N*m", "position": "rad"}
-#: Parts that an effect or a sensor may need of an arm, beside its input.
-NEEDS = ("beam", "tip", "soft_gears", "windup", "motor", "amplifier", "motor_inertia", "hub_inertia", "supply")
+#: Parts that an effect or a sensor may need of an arm, beside its input, in words.
+NEEDS = {
+    "beam": "a beam",
+    "tip": "a tip of a beam or of a link with a length",
+    "soft_gears": "a joint or gears with a stiffness",
+    "windup": "a motor's speed or a servo",
+    "motor": "a motor with constants of its own",
+    "amplifier": "a drive other than a servo",
+    "motor_inertia": "an inertia of the motor",
+    "hub_inertia": "an inertia of the hub",
+    "supply": "a supply voltage without a sensor of the current",
+}
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,15 @@ def table(**changes: Any) -> dict[str, Any]:
     [
         ({"drive": TORQUE | {"torque_constant": 0.1}}, r"drive\.torque_constant: a torque drive has none"),
         ({"drive": TORQUE | {"error_gain": 0.1}}, r'drive\.error_gain is of a servo, and drive\.input is "torque"'),
+        ({"drive": TORQUE | {"supply_voltage": 12}}, r"drive\.supply_voltage: a torque drive has none"),
+        ({"drive": TORQUE | {"largest_duty": 0.5}}, r'drive\.largest_duty is of a servo, and drive\.input is "torque"'),
+        ({"drive": TORQUE | {"enabled": True}}, r"drive\.enabled = True is no number; write for example 1$"),
+        ({"link": LINK | {"mass": True}}, r'link\.mass = True is no number; write for example 0\.1 or "0\.1 kg"'),
+        ({"sensors": {"arm_angle": 5}}, r"sensors\.arm_angle is not a table; write \[sensors\.arm_angle\]"),
+        ({"drive": SERVO, "sensors": {"motor_current": {}}}, r"motor_current needs a drive other than a servo"),
+        ({"drive": TORQUE, "sensors": {"motor_current": {}}}, r"motor_current needs a motor with constants of its own"),
+        ({"conditions": {"arm mass": "link.mass"}}, r"condition 'arm mass': write its name in letters"),
+        ({"conditions": {"paylod": "link.mass"}}, r"unknown condition 'paylod'; did you mean 'payload'"),
         ({"drive": SERVO | {"proportional": 0}}, r"drive\.proportional is missing or 0: the servo"),
         ({"drive": SERVO | {"supply_voltage": 0}}, r"drive\.supply_voltage is missing or 0"),
         ({"drive": SERVO | {"resistance": 0}}, r"drive\.resistance is missing .* position drive needs it"),
@@ -70,6 +79,9 @@ def test_an_arm_says_what_it_has():
     assert [arm.has("tip") for arm in (pendulum(), pendulum(length=0.0), Arm.load("thesis"))] == [True, False, True]
     assert [arm.has("soft_gears") for arm in (elastic_joint(), pendulum(), Arm.load("thesis-fem"))] == [True, False, True]
     assert [arm.has("supply") for arm in (servo(), elastic_joint())] == [True, False]
+    measured = elastic_joint().constants | {"sensors": {"arm_angle": {}, "motor_current": {}}}
+    measured["drive"] = {"input": "voltage"} | measured["drive"] | {"supply_voltage": 12.0}
+    assert not Arm.from_table(measured, "measured").can_have("supply_sag"), "its current is a signal, which sag does not give"
     assert [arm.has("motor") for arm in (servo(), pendulum())] == [True, False]
     assert [arm.can_have("current_lag") for arm in (servo(), pendulum())] == [False, True]
     assert [arm.has("windup") for arm in (servo(), elastic_joint(), Arm.load("emps"))] == [True, True, False]

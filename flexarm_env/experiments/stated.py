@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from flexarm_env.arm import Arm
+from flexarm_env.arm_file import check_constants
 from flexarm_env.errors import InputError
 from flexarm_env.parameters import check_bounds
 from flexarm_env.plant.plant import Plant
@@ -38,19 +39,27 @@ def stated_by(arm: Arm, recording: Recording) -> Stated:
 
 
 def check_stated(arm: Arm, recording: Recording) -> None:
-    """Refuse a payload that the arm has no tip to carry, and a value out of bounds.
+    """Refuse a payload that the arm has no tip to carry, and a value out of bounds or with which there is no such arm.
 
     Raises:
         InputError: for such a condition.
     """
-    for path, value in stated_by(arm, recording):
-        if path != PAYLOAD:
-            check_bounds(f"{recording.name} states {path}, which", value, arm.parameter(path))
-        elif not arm.has("tip"):
-            raise InputError(
-                f"{recording.name} states a payload of {value:g} kg, but arm '{arm.name}' has no tip to carry it; "
-                "add [beam], or a length to [link], or put the load into hub.inertia and take the line '# payload' out"
-            )
+    stated = dict(stated_by(arm, recording))
+    payload = stated.pop(PAYLOAD, 0.0)
+    for path, value in stated.items():
+        check_bounds(f"{recording.name} states {path}, which", value, arm.parameter(path))
+    machine = arm.with_values(stated)
+    if stated:
+        try:
+            check_constants(machine.input, machine.constants)
+        except InputError as error:
+            values = ", ".join(f"{path} = {value:g}" for path, value in stated.items())
+            raise InputError(f"{recording.name} states {values}: {error}") from None
+    if payload and not machine.has("tip"):
+        raise InputError(
+            f"{recording.name} states a payload of {payload:g} kg, but arm '{arm.name}' has no tip to carry it; "
+            "add [beam], or a length to [link], or put the load into hub.inertia and take the line '# payload' out"
+        )
 
 
 def with_stated(arm: Arm, stated: Stated) -> Arm:

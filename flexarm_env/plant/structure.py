@@ -366,7 +366,7 @@ def _current(s: Structure, size: int, motor: int) -> Current | None:
     rows = np.zeros((2, *np.shape(s.hub_inertia), size))
     if exceeds(s.current_lag, SHORTEST_LAG):
         return Current(0.0, rows[0], rows[1], lagged=1.0)
-    per_command, rows[0, ..., motor], rows[1, ..., motor] = _amps(s)
+    per_command, rows[0, ..., motor], rows[1, ..., motor] = _amps(s) if exceeds(s.efficiency, 0.0) else (0.0, 0.0, 0.0)
     return Current(per_command, rows[0], rows[1])
 
 

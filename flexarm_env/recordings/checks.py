@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexarm_env.errors import InputError
 from flexarm_env.recordings.clock import step_back_error
+from flexarm_env.recordings.conditions import check_spelling
 from flexarm_env.sensors import known_sensors
 
 Floats = NDArray[np.float64]
@@ -22,7 +23,7 @@ LONGEST_STEP, SHORTEST_STEP = 10_000, 1e-7
 #: Of a number that is not finite, in a signal (True) and in a column that must be there in every row.
 _REMEDIES = {
     True: "correct it, or leave the cell empty if nothing was measured",
-    False: "correct it; a replay needs time, command and reference in every row; only a signal may be absent",
+    False: "correct it; a replay needs time and reference in every row; only signals and later commands may be absent",
 }
 
 
@@ -134,10 +135,11 @@ def check_conditions(conditions: Mapping[str, float]) -> None:
     """Check that a header can hold the conditions.
 
     Raises:
-        InputError: for a name that is none, or a value that is not finite, or a negative payload.
+        InputError: for a name that is none or misspells a known one, or a value that is not finite, or a negative payload.
     """
     for name, value in conditions.items():
         if not name.isidentifier() or not name.isascii():
             raise InputError(f"condition {name!r}: write its name in letters, digits and _")
+        check_spelling(name)
         if not math.isfinite(value) or (name == "payload" and value < 0):
             raise InputError(f"condition '{name}' is {value}; write a finite number, for payload one not below 0")

@@ -151,8 +151,9 @@ def _held(name: str, entry: Mapping[str, Any]) -> Source:
     if others:
         raise InputError(f"[columns] {name}: has 'value' and '{others[0]}'; the value alone makes the command")
     value, unit = entry["value"], UNITS[name]
+    given = value if isinstance(value, str) else typed(f"{name}: value", value, float)
     try:
-        number = units.quantity(value if isinstance(value, str) else typed(f"{name}: value", value, float), unit)
+        number = units.quantity(given, unit)
     except InputError as error:
         raise InputError(f"[columns] {name}: value: {error}") from None
     if not math.isfinite(number):

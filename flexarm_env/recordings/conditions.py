@@ -37,13 +37,22 @@ def add_condition(line: str, conditions: dict[str, float]) -> None:
     name, value = match[1], f"{match[4]} {match[2] or ''}".strip()
     if name in conditions:
         raise InputError(f"condition {quoted(name)} comes twice; keep one of the two")
+    check_spelling(name)
     if name in CONDITIONS:
         conditions[name] = units.quantity(value, CONDITIONS[name])
-    elif _near(name):
-        raise InputError(f"unknown condition {quoted(name)}{did_you_mean(name.lower(), CONDITIONS)}")
     elif units.is_quantity(value):
         with contextlib.suppress(InputError):  # "# trial = 3 good" is a remark
             conditions[name] = units.base_value(value)
+
+
+def check_spelling(name: str) -> None:
+    """Refuse the name of a condition that misspells a known one, which would be lost.
+
+    Raises:
+        InputError: for such a name.
+    """
+    if name not in CONDITIONS and _near(name):
+        raise InputError(f"unknown condition {quoted(name)}{did_you_mean(name.lower(), CONDITIONS)}")
 
 
 def _check_remark(text: str) -> None:

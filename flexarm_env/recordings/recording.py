@@ -45,11 +45,10 @@ class Recording(Shown):
     Attributes:
         name: for tables and plots.
         time: (n,) [s], rising from 0.
-        input_kind: "current" or "voltage".
-        command: (n,) [A or V], the commanded input of the drive.
-        signals: (n,) each, by name: arm_angle [rad], motor_speed [rad/s], strain_mid [V], strain_base [V],
-            tip_deflection [m]; none in commands that are only to be played. NaN where a signal was not measured: between
-            the readings of a slower sensor, and in its gaps.
+        input_kind: "current", "voltage", "torque" or "position".
+        command: (n,) [A, V, Nm or rad], the commanded input of the drive.
+        signals: (n,) each, by name, in the SI unit of its sensor, such as arm_angle [rad]; none in commands that are only to be
+            played. NaN where a signal was not measured: between the readings of a slower sensor, and in its gaps.
         reference: (n,) [rad], the commanded arm angle, or None.
         conditions: known conditions in SI. A replay takes up `payload` [kg], and those to which the arm gives a constant. The
             others inform a person, also `start` [s], how long the run had gone on before the first sample: times of effects
@@ -115,8 +114,8 @@ class Recording(Shown):
         Args:
             name: for tables and plots.
             time: (n,) [s], rising; it is shifted to start at 0.
-            input_kind: "current" or "voltage".
-            command: (n,) [A or V].
+            input_kind: "current", "voltage", "torque" or "position".
+            command: (n,) [A, V, Nm or rad].
             signals: (n,) each, by name, in SI; NaN where one was not measured.
             reference: (n,) [rad].
             conditions: known conditions in SI.
@@ -387,6 +386,8 @@ def _with_sidecar(recording: Recording, path: Path) -> Recording:
     twice = [name for name in stated if name in recording.conditions]
     if twice:
         raise file_error(path, f"condition '{twice[0]}' comes twice, in the file and in {beside.name}; keep one of the two")
+    if not stated:
+        return recording
     note = f"{beside.name} states {', '.join(f'{name} = {value:g}' for name, value in stated.items())}"
     return replace(recording, conditions=recording.conditions | stated, notes=(*recording.notes, note))
 

@@ -58,7 +58,8 @@ def _places(gaps: Floats) -> Floats:
 def distinct_readings(readings: Floats) -> NDArray[np.bool_]:
     """Mark the readings that count: all, or one of each beat where the sensor is slower than the rows.
 
-    Readings of a slow sensor never change in two successive rows. Those of a coarse one do so by chance.
+    Readings of a slow sensor never change in two successive rows. Those of a coarse one do so by chance. Where a slow one keeps
+    no beat, each change counts.
 
     Args:
         readings: (n,) finite.
@@ -71,8 +72,10 @@ def distinct_readings(readings: Floats) -> NDArray[np.bool_]:
     by_chance, gaps = share * len(changes), np.diff(changes)
     if by_chance < FEWEST_PAIRS or np.count_nonzero(gaps == 1) >= HELD * by_chance:
         return np.ones(len(readings), dtype=np.bool_)
-    beat = int(np.flatnonzero(np.bincount(gaps) >= HELD * len(gaps))[0])
-    return ~repeated_readings(readings, beat)
+    beats = np.flatnonzero(np.bincount(gaps) >= HELD * len(gaps))
+    if beats.size:
+        return ~repeated_readings(readings, int(beats[0]))
+    return np.diff(readings, prepend=np.inf) != 0.0
 
 
 def repeated_readings(readings: Floats, beat: int) -> NDArray[np.bool_]:

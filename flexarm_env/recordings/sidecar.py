@@ -66,10 +66,12 @@ def _check_tables(table: Mapping[str, Any], conditions: Any) -> None:
 
 
 def _in_si(name: str, value: Any) -> float:
-    if not isinstance(value, str | int | float):
-        raise InputError(f"condition '{name}' is {value!r}; write a number, a quantity such as '0.3 kg', true or false")
+    known = name in CONDITIONS
+    if not isinstance(value, str | int | float) or (known and isinstance(value, bool)):
+        allowed = "a number, a quantity such as '0.3 kg', true or false"
+        raise InputError(f"condition '{name}' is {value!r}; write {f'a number in {CONDITIONS[name]}' if known else allowed}")
     try:
-        if name in CONDITIONS:
+        if known:
             return units.quantity(value, CONDITIONS[name])
         return units.base_value(value) if isinstance(value, str) else units.as_float(value)
     except InputError as error:

@@ -29,13 +29,18 @@ def rigs_in(folder: Path, names: Sequence[str] = ()) -> list[Rig]:
         names: of the rigs wanted; all by default.
 
     Raises:
-        InputError: for a name that is none, and for a folder without the recordings of any of them.
+        InputError: for a name that is none, one whose recordings are not all there, and a folder with those of no rig.
     """
     known = [rig.name for rig in RIGS]
     for name in names:
         if name not in known:
             raise InputError(f"unknown rig '{name}'; there are {', '.join(known)}")
-    found = [rig for rig in RIGS if (not names or rig.name in names) and rig.is_in(folder)]
+    wanted = [rig for rig in RIGS if not names or rig.name in names]
+    found = [rig for rig in wanted if rig.is_in(folder)]
+    if names and len(found) < len(wanted):
+        rig = next(rig for rig in wanted if rig not in found)
+        lacks = next(record.file for record in (*rig.training, *rig.held_out) if not (folder / record.file).is_file())
+        raise InputError(f"{folder}: lacks {lacks} of rig '{rig.name}'; put it there, or leave the rig out")
     if not found:
         first = RIGS[0].training[0].file
         raise InputError(f"{folder}: has the recordings of no rig; name the folder in which {first} lies")

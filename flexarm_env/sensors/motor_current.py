@@ -17,7 +17,7 @@ class MotorCurrent(Sensor):
     measures = "the motor's current"
     typical = 1.0
     largest = 1e3
-    needs = ("motor",)
+    needs = ("motor", "amplifier")
     order = 70.0
     defaults: ClassVar = {"filter": 0.001}
 

@@ -9,7 +9,7 @@ import pytest
 
 from flexarm_env import Arm, Recording, compare, fit, simulate
 from flexarm_env.errors import InputError
-from flexarm_env.experiments.stated import stated_by, with_stated
+from flexarm_env.experiments.stated import check_stated, stated_by, with_stated
 from flexarm_env.identify.calibrate.parameters import free_parameters
 from flexarm_env.identify.replay.dataset import prepare
 
@@ -102,3 +102,10 @@ def test_a_value_out_of_bounds_is_refused():
     arm = rigid()
     with pytest.raises(InputError, match=r"heavy states hub\.inertia, which = -1 kg\*m\*\*2 is out of bounds"):
         compare(arm, [replace(loaded(arm, "heavy", 3.0), conditions={"load": -1.0})])
+
+
+def test_a_value_with_which_there_is_no_such_arm_is_refused():
+    arm = replace(rigid(), conditions={"ohm": "drive.resistance"})
+    run = replace(loaded(rigid(), "cold", 3.0), conditions={"ohm": 0.0})
+    with pytest.raises(InputError, match=r"cold states drive\.resistance = 0: drive\.resistance is missing or below 1e-06 ohm"):
+        check_stated(arm, run)

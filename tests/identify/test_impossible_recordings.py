@@ -52,3 +52,11 @@ def test_an_arm_that_does_not_stay_finite_is_named():
     run = simulate(Arm.load("thesis-fem"), "pulse", duration=1.0, rate=200.0)
     with pytest.raises(InputError, match=r"effects\.asymmetric_viscous\.coefficient = 100000"):
         compare(arm, [run])
+
+
+@pytest.mark.parametrize("kind", ["current", "voltage", "position"])
+def test_a_command_of_another_kind_is_named_as_it_is(kind):
+    arm = Arm.load("dfki-pendulum")
+    run = Recording("run", np.arange(20) / 100.0, kind, np.zeros(20), {"arm_angle": np.zeros(20)})
+    with pytest.raises(InputError, match=f"run holds {kind}, but arm 'dfki-pendulum' is driven by torque; correct drive.input"):
+        compare(arm, [run])

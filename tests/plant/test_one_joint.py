@@ -236,10 +236,12 @@ def test_a_motor_s_current_is_what_voltage_and_back_emf_make_of_it():
     assert acceleration == pytest.approx(48.4 * 0.0107 * current / 0.0035, rel=1e-6)
 
 
-def test_what_limits_make_of_the_current_is_refused():
-    table = {"drive": {"input": "position", **dict(servo().constants["drive"])}, "link": {"mass": 1, "centre": 1, "inertia": 1}}
-    with pytest.raises(InputError, match=r"motor_current measures the motor's current, which .* do not give"):
-        Arm.from_table(table | {"sensors": {"motor_current": {}}}, "servo").plant(INTERVAL)
+def test_a_motor_that_is_off_carries_no_current():
+    arm = Arm.load("cu-rigid")
+    table = {"drive": {"input": "voltage", **dict(arm.constants["drive"]), "enabled": 0}, "hub": dict(arm.constants["hub"])}
+    plant = Arm.from_table(table | {"sensors": {"motor_current": {}}}, "off").plant(INTERVAL)
+    plant.place()
+    assert not plant.replay(np.full(10, 5.0)).any()
 
 
 MACHINES = (pendulum(), elastic_joint(), servo(), pendulum(vertical=False).with_effect("fixture_compliance"))

@@ -79,6 +79,14 @@ def test_a_path_that_leads_to_no_numbers_is_refused(tmp_path, path, words):
     assert words in refusal(written(tmp_path, log()), columns=MAP | {"arm_angle": {"variable": path, "unit": "rad"}})
 
 
+@pytest.mark.parametrize("key", ["row", "index"])
+def test_an_element_is_named_in_the_path_alone(tmp_path, key):
+    entry = {"variable": "entries.q", "unit": "rad", key: 1}
+    message = refusal(written(tmp_path, log()), columns=MAP | {"arm_angle": entry})
+    assert "has 'row' or 'index' beside the variable of 'arm_angle'; write the element behind its name" in message
+    assert "entries.q[0]" in message
+
+
 def test_a_command_is_needed_in_every_entry(tmp_path):
     content = log()
     content["entries"][3]["u"] = None

@@ -77,6 +77,14 @@ def test_readings_of_a_slow_sensor_are_taken_once(rows, step):
     assert estimated(time, held).total == pytest.approx(np.hypot(SIGMA, step / 12**0.5), rel=0.15)
 
 
+def test_each_change_of_a_slow_sensor_without_a_beat_counts():
+    random = np.random.default_rng(7)
+    held = random.integers(5, 60, 800)  # rows for which each reading is held; no number of them is common
+    values = random.normal(0.0, 1.0, len(held))
+    counts = np.flatnonzero(distinct_readings(np.repeat(values, held)))
+    assert counts.tolist() == [0, *np.cumsum(held)[:-1].tolist()]
+
+
 @pytest.mark.parametrize("share", [0.4, 0.02])
 def test_a_coarse_sensor_is_not_taken_for_a_slow_one(share):
     time = np.arange(0.0, 10.0, 0.002)

@@ -45,6 +45,8 @@ def test_an_arm_or_a_map_beside_a_recording_states_no_conditions(tmp_path, conte
         ("[conditions]\nkp = [1]\n", "condition 'kp' is [1]; write a number"),
         ("[conditions]\nkp = 'much'\n", "condition 'kp': 'much' is not a number"),
         ("[conditions]\npayload = '1 m'\n", "condition 'payload': unit 'm' does not convert to kg"),
+        ("[conditions]\npaylod = '0.3 kg'\n", "unknown condition 'paylod'; did you mean 'payload'"),
+        ("[conditions]\npayload = true\n", "condition 'payload' is True; write a number in kg"),
         ("[conditions]\npayload = -1\n", "condition 'payload' is -1"),
         ("[conditions]\n'k p' = 1\n", "condition 'k p': write its name"),
         ("[conditions]\nkp = nan\n", "condition 'kp' is nan"),

@@ -121,6 +121,8 @@ def test_an_unknown_rig_and_a_folder_without_recordings_are_refused(bench, tmp_p
     assert not (tmp_path / "rigs").exists()
     with pytest.raises(InputError, match="unknown rig"):
         gallery.rigs_in(bench, ["emps"])
+    with pytest.raises(InputError, match=r"lacks bench/one\.csv of rig 'bench'; put it there, or leave the rig out"):
+        gallery.rigs_in(tmp_path, ["bench"])
 
 
 def test_goals_are_reached_from_either_side():

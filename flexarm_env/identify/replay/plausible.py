@@ -11,7 +11,6 @@ from flexarm_env.experiments.stated import check_stated, stated_by, with_stated
 from flexarm_env.identify.replay.build_run import readings_of
 from flexarm_env.identify.replay.readings import share_of
 from flexarm_env.identify.settings import Preparation
-from flexarm_env.parameters import INPUTS
 from flexarm_env.plant.plant import NO_INTERVALS
 from flexarm_env.recordings.recording import Recording
 
@@ -28,8 +27,10 @@ def check_recording(arm: Arm, recording: Recording, numbers: Preparation) -> Non
         InputError: for another kind of command, too few readings, and times or commands beyond any arm.
     """
     if recording.input_kind != arm.input:
-        other = next(kind for kind in INPUTS if kind != arm.input)
-        raise InputError(f"{recording.name} holds {other}, but arm '{arm.name}' is driven by {arm.input}")
+        raise InputError(
+            f"{recording.name} holds {recording.input_kind}, but arm '{arm.name}' is driven by {arm.input}; "
+            f"correct drive.input in its file, or name the command {arm.input} in [columns]"
+        )
     check_stated(arm, recording)
     count = int(np.count_nonzero(share_of(readings_of(arm, recording))))
     if count < numbers.fewest_samples:

@@ -26,6 +26,7 @@ class Format:
             without the file's name.
         needs_map: whether only a column map says which column is which; otherwise a file may have FlexArm's own header.
         also: suffixes that such a file may have, too, but that files in a folder may have for other reasons.
+        matrices: whether an entry may take a `row` or an `index` of a variable.
     """
 
     name: str
@@ -34,6 +35,7 @@ class Format:
     read: Callable[[bytes, ColumnMap | None], Table]
     needs_map: bool = True
     also: tuple[str, ...] = ()
+    matrices: bool = False
 
     def table(self, content: bytes, columns: ColumnMap | None) -> Table:
         """Read the content of a file.
@@ -68,6 +70,11 @@ class Format:
                 raise InputError(f"is a {self.name}, but [columns] has no place for '{name}'; add {use}")
             if source.key not in allowed:
                 raise InputError(f"is a {self.name}, but [columns] has '{source.key}' for '{name}'; use {use}")
+            if not self.matrices and (source.row, source.cut) != (None, None):
+                raise InputError(
+                    f"is a {self.name}, but [columns] has 'row' or 'index' beside the {source.key} of '{name}'; "
+                    f"write the element behind its name, as {source.place}[0]"
+                )
 
     def _with_conditions(self, content: bytes, columns: ColumnMap) -> Table:
         """Read the columns of conditions beside the others; each must hold one number throughout."""

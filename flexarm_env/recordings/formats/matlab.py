@@ -83,4 +83,4 @@ def _even_time(step: float, source: Source, count: int) -> tuple[Floats, Source]
     return step * np.arange(count, dtype=np.float64), source
 
 
-FORMAT = Format("MATLAB file", (".mat",), ("variable",), read)
+FORMAT = Format("MATLAB file", (".mat",), ("variable",), read, matrices=True)
