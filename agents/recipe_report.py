@@ -170,7 +170,8 @@ def draw_curves(runs: Mapping[str, Sequence[Mapping[str, Any]]], meanings: Mappi
     for panel in panels:
         panel.set_xlabel("steps [10³]")
         panel.grid(alpha=0.3)
-    figure.legend(loc="outside lower center", ncols=len(meanings), fontsize=8)
+    # both panels have the same lines: one's labels are enough
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=len(meanings), fontsize=8)
     picture = io.BytesIO()
     figure.savefig(picture, dpi=110, metadata={"Software": None})
     write_whole(path, picture.getvalue())

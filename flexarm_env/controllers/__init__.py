@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import inspect
+import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args, get_type_hints
 
 from flexarm_env.arm import Arm
 from flexarm_env.controllers.base import Controller
@@ -69,6 +70,15 @@ CONTROLLERS: dict[str, Recipe] = {
 }
 
 
+#: Types of an option's values, and how a person is told of them, by the type that the option is declared with.
+TYPES: dict[type, tuple[tuple[type, ...], str]] = {
+    float: ((int, float), "a finite number"),
+    int: ((int,), "a whole number from 1 up"),
+    bool: ((bool,), "true or false"),
+    str: ((str,), "a text"),
+}
+
+
 def tuned_recipe(tuned: TunedController) -> Recipe:
     """Make the recipe of a law with the options that a search has found.
 
@@ -115,19 +125,26 @@ def make_controller(name: str, arm: Arm, interval: float, **options: Any) -> Con
 
 
 def _check(name: str, recipe: Recipe, options: Mapping[str, Any]) -> None:
-    """Refuse options that a recipe's class does not have."""
+    """Refuse options that a recipe's class does not have, and values of another type than the option's."""
     allowed = _options(recipe.build)
-    for option in options:
+    for option, value in options.items():
         if option not in allowed:
             raise InputError(f"controller '{name}' has no option '{option}'{did_you_mean(option, allowed)}")
+        hint = allowed[option]
+        for kind in TYPES.keys() & {hint, *get_args(hint)}:
+            types, meaning = TYPES[kind]
+            if value is None and type(None) in get_args(hint):
+                continue
+            if type(value) not in types or not math.isfinite(value if kind is not str else 0) or (kind is int and value < 1):
+                raise InputError(f"controller '{name}': {option} = {value!r}; give {meaning}")
 
 
-def _options(build: type[Controller]) -> list[str]:
-    """List a class's options, with those that it passes on to the class above."""
-    parameters = inspect.signature(build).parameters.values()
-    own = [p.name for p in parameters if p.kind is not inspect.Parameter.VAR_KEYWORD][2:]
+def _options(build: type[Controller]) -> dict[str, Any]:
+    """List a class's options and their types, with those that it passes on to the class above."""
+    parameters, hints = inspect.signature(build).parameters.values(), get_type_hints(build.__init__)
+    own = {p.name: hints[p.name] for p in list(parameters)[2:] if p.kind is not inspect.Parameter.VAR_KEYWORD}
     hands_on = any(p.kind is inspect.Parameter.VAR_KEYWORD for p in parameters)
-    return own + (_options(build.__mro__[1]) if hands_on else [])
+    return own | (_options(build.__mro__[1]) if hands_on else {})
 
 
 # the laws themselves stand above: a tuned one refers to its law

@@ -11,6 +11,9 @@ from flexarm_env.errors import InputError, did_you_mean
 
 D = TypeVar("D", bound="Design")
 
+#: Most samples of a time of a design: 20 s at 200 Hz, far beyond any dead time or horizon.
+MOST_SAMPLES = 4000
+
 
 class Design:
     """Base of the numbers of a law: frozen dataclasses of finite numbers, none of them negative."""
@@ -44,3 +47,18 @@ class Design:
             if name not in names:
                 raise InputError(f"design has no '{name}'{did_you_mean(str(name), names)}")
         return cls(**(given or {}))
+
+    def samples(self, name: str, interval: float) -> int:
+        """Count the samples of a time of the design, by its name, rounded.
+
+        Args:
+            name: of the time.
+            interval: control period [s].
+
+        Raises:
+            InputError: for more samples than a loop could use.
+        """
+        time = getattr(self, name)
+        if time > MOST_SAMPLES * interval:
+            raise InputError(f"design: {name} = {time:g} s; give at most {MOST_SAMPLES * interval:g} s, {MOST_SAMPLES} samples")
+        return round(time / interval)

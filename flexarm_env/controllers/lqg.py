@@ -88,7 +88,7 @@ class LQG(Controller):
         self.stiffness = float(self.gain @ np.linalg.pinv(self.estimator.model.lift)[:, 0])
         self._furthest = self.design.share * limit / self.stiffness
         self._most_friction = self.coulomb_torque()
-        self._late = round(self.design.dead_time / interval)
+        self._late = self.design.samples("dead_time", interval)
 
     def _start(self, count: int) -> None:
         super()._start(count)

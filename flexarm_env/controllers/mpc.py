@@ -55,7 +55,7 @@ class Program:
 
     def __init__(self, designed: LQG, design: MPCDesign, limit: float) -> None:
         model = designed.estimator.model
-        steps = max(round(design.horizon / designed.interval), 1)
+        steps = max(design.samples("horizon", designed.interval), 1)
         ends = np.unique(np.round(np.geomspace(1.0, steps, MOVES)).astype(int))
         move = np.searchsorted(ends, np.arange(steps), side="right")
         push, size = limit * model.response[:, 0], len(model.transition)

@@ -20,8 +20,8 @@ Floats = NDArray[np.float64]
 IMPULSE = 1e-3
 #: The response has ended where its largest value in a stretch of samples is below this share of its largest ever.
 ENDED, STRETCH = 1e-5, 400
-#: It does not end where its largest value in an age of samples is above this share of that in the age before, or after the last.
-LASTING, AGE, LONGEST = 0.95, 2000, 40_000
+#: The loop is not stable where it has not ended after this number of samples.
+LONGEST = 40_000
 #: Effects without which an arm's friction is linear.
 DRY_FRICTION = ("coulomb", "asymmetric_coulomb", "stiction", "stribeck", "presliding", "load_friction", "position_friction")
 #: Least number of points of the Fourier transform.
@@ -166,7 +166,3 @@ def sensitivity(controller: Controller, arm: Arm, speed: float = 0.0) -> Floats:
         ):
             return response[1 : k + 1]
     raise InputError(f"the loop of {type(controller).__name__} and arm '{arm.name}' is not stable: it has no margins")
-
-
-def _peak(values: Floats) -> float:
-    return float(np.abs(values).max())

@@ -11,7 +11,7 @@ from typing import Any
 from flexarm_env import __version__
 from flexarm_env.arm import Arm
 from flexarm_env.arm_file import arm_text
-from flexarm_env.controllers import CONTROLLERS, Controller
+from flexarm_env.controllers import CONTROLLERS, Controller, tuned_recipe
 from flexarm_env.controllers.tuned import TunedController, on_drive
 from flexarm_env.errors import InputError
 from flexarm_env.tasks import CONTROL_RATE
@@ -117,6 +117,8 @@ def first_values(controller: str, arm: Arm, space: Mapping[str, Range], start: T
     """
     if start is not None and start.controller != controller:
         raise InputError(f"a search of {controller} cannot start from {start.controller}; name a file of {controller}")
+    if start is not None:
+        tuned_recipe(start)  # refuses options that the law does not have
     made = law(controller, arm, start.options if start is not None else {})(1.0 / CONTROL_RATE)
     found = {}
     for path, ends in space.items():

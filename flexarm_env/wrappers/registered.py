@@ -13,6 +13,7 @@ from flexarm_env.arm_file import config_folders
 from flexarm_env.env.arguments import ArmLike, find_arm
 from flexarm_env.env.flexarm import FlexArmEnv
 from flexarm_env.env.task_envs import refuse_task
+from flexarm_env.errors import InputError
 from flexarm_env.tasks import TASKS, Task
 from flexarm_env.vector_env import FlexArmVectorEnv
 from flexarm_env.wrappers.arms import draws_of
@@ -100,9 +101,15 @@ def _options(
 ) -> tuple[InterfaceOptions, RewardOptions]:
     found = trained_on(task.name)
     return (
-        read_options(InterfaceOptions, vars(found.interface) | dict(interface or {})),
-        read_options(RewardOptions, vars(found.reward) | dict(reward or {})),
+        read_options(InterfaceOptions, vars(found.interface) | _table("interface", interface)),
+        read_options(RewardOptions, vars(found.reward) | _table("reward", reward)),
     )
+
+
+def _table(name: str, given: Any) -> dict[str, Any]:
+    if not isinstance(given, Mapping | None):
+        raise InputError(f"{name} = {given!r}; give a table of options by name")
+    return dict(given or {})
 
 
 def __getattr__(name: str) -> Callable[..., Any]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from flexarm_env.env.flexarm import FlexArmEnv
 from flexarm_env.wrappers.options import InterfaceOptions, RewardOptions
-from flexarm_env.wrappers.shaping import Shaping, refuse_state
+from flexarm_env.wrappers.shaping import Shaping, refuse_other, refuse_state
 
 Floats = NDArray[np.float32]
 
@@ -29,7 +29,8 @@ class Shaped(gym.Wrapper[Floats, Floats, Floats, Floats], RecordConstructorArgs)
         reward: RewardOptions, or a table of them; None for the reward of the task, summed over the samples of an action.
 
     Raises:
-        InputError: for observations that are not physical, options that do not exist, or an arm that lacks what they need.
+        InputError: for an environment of another kind, observations that are not physical, options that do not exist, or an arm
+            that lacks what they need.
 
     Examples:
         >>> import flexarm_env
@@ -47,10 +48,9 @@ class Shaped(gym.Wrapper[Floats, Floats, Floats, Floats], RecordConstructorArgs)
         interface: InterfaceOptions | Mapping[str, Any] = InterfaceOptions(),  # noqa: B008 - frozen
         reward: RewardOptions | Mapping[str, Any] | None = RewardOptions(),  # noqa: B008 - frozen
     ) -> None:
+        bare = refuse_other(env.unwrapped, FlexArmEnv)
         RecordConstructorArgs.__init__(self, interface=table_of(interface), reward=table_of(reward))
         gym.Wrapper.__init__(self, env)
-        bare = env.unwrapped
-        assert isinstance(bare, FlexArmEnv)
         self.shaping = Shaping(bare.setup, bare.batch, bare.prior, interface, reward)
         self.observation_space, self.action_space = self.shaping.observation_space, self.shaping.action_space
 

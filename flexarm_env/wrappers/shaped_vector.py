@@ -15,7 +15,7 @@ from flexarm_env.env.batch import Batch
 from flexarm_env.errors import InputError
 from flexarm_env.vector_env import FlexArmVectorEnv
 from flexarm_env.wrappers.options import InterfaceOptions, RewardOptions
-from flexarm_env.wrappers.shaping import Shaping, refuse_state
+from flexarm_env.wrappers.shaping import Shaping, refuse_other, refuse_state
 
 Array = NDArray[Any]
 
@@ -33,7 +33,8 @@ class ShapedVector(VectorWrapper[Array, Array, Array, Array, Array]):
         max_episode_steps: actions after which episodes are truncated; those of the task's duration by default.
 
     Raises:
-        InputError: for observations that are not physical, options that do not exist, or an arm that lacks what they need.
+        InputError: for an environment of another kind, observations that are not physical, options that do not exist, or an arm
+            that lacks what they need.
 
     Examples:
         >>> env = ShapedVector(FlexArmVectorEnv(3, "slew", physical=True), {"base": "pd", "repeat": 4})
@@ -52,7 +53,7 @@ class ShapedVector(VectorWrapper[Array, Array, Array, Array, Array]):
         max_episode_steps: int | None = None,
     ) -> None:
         super().__init__(env)
-        self.arms = env
+        self.arms = refuse_other(env, FlexArmVectorEnv)
         self.shaping = Shaping(env.setup, env.batch, env.prior, interface, reward)
         if max_episode_steps is not None:
             self.shaping.steps = min(self.shaping.steps, max_episode_steps)

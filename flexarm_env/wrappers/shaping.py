@@ -20,6 +20,7 @@ from flexarm_env.wrappers.reward import ShapedReward
 
 Array = NDArray[Any]
 Options = TypeVar("Options")
+Env = TypeVar("Env")
 
 #: Moves arms by one sample under commands (arms, 1): returns observations (arms, signals + 1), rewards and terminated (arms,).
 Move = Callable[[Array], tuple[Array, Array, Array]]
@@ -117,3 +118,14 @@ def refuse_state(options: Mapping[str, Any] | None) -> None:
         raise InputError(
             "options: a whole state lacks the wrapper's memory; give state.physical, or go on from copy.deepcopy(env)"
         )
+
+
+def refuse_other(env: Any, kind: type[Env]) -> Env:
+    """Refuse an environment that has no arms, or is not of the wrapper's kind; return the others.
+
+    Raises:
+        InputError: with the environment that is wrapped.
+    """
+    if not isinstance(env, kind):
+        raise InputError(f"the wrapper works on {kind.__name__}, not on {type(env).__name__}; wrap an environment of FlexArm")
+    return env

@@ -124,6 +124,26 @@ def test_a_file_that_is_no_controller_is_refused_in_one_line(tmp_path, text, wor
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.parametrize(
+    ("law", "options", "words"),
+    [
+        ("pd", {"proportional": "2"}, "give a finite number"),
+        ("pd", {"proportional": [1.0]}, "give a finite number"),
+        ("pd", {"derivative": float("nan")}, "give a finite number"),
+        ("lqg", {"order": 0}, "a whole number from 1 up"),
+        ("lqg", {"design": {"dead_time": 1e9}}, "give at most 20 s"),
+        ("mpc", {"design": {"horizon": 1e6}}, "give at most 20 s"),
+        ("vibration_dual", {"friction_compensation": "no"}, "give true or false"),
+        ("shaped_zv", {"shaper": 3}, "give a text"),
+    ],
+)
+def test_a_value_that_an_option_cannot_have_is_refused_in_one_line(tmp_path, law, options, words) -> None:
+    TunedController(law, "thesis", "0.1.0", options).save(tmp_path / "a.toml")
+    with pytest.raises(InputError, match=words) as error:
+        make_controller(str(tmp_path / "a.toml"), Arm.load("thesis"), 0.005)
+    assert "\n" not in str(error.value)
+
+
 def test_a_set_that_an_arm_cannot_have_is_left_out_of_its_score() -> None:
     arm = Arm.load("cu-flexible")
     cells = judge.cells_of(arm, 12, 0)
@@ -142,3 +162,5 @@ def test_a_search_starts_from_a_tuned_controller(monkeypatch) -> None:
     assert found.options == pytest.approx(values)
     with pytest.raises(InputError, match="cannot start from vibration_dual"):
         tune("pd", thesis, Budget(1, 2), start=start)
+    with pytest.raises(InputError, match="no option 'gain'"):
+        tune("pd", thesis, Budget(1, 2), start=TunedController("pd", "thesis", "0.1.0", {"gain": 1.0}))

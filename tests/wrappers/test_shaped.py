@@ -213,3 +213,17 @@ def test_goals_are_drawn_by_seed_within_their_range() -> None:
 def test_the_own_reward_is_that_of_the_task() -> None:
     env = gym.make("FlexArm/Slew-Shaped-v0")
     assert {f"reward_{term.name}" for term in COMMON_TERMS} <= env.reset(seed=0)[1].keys()
+
+
+@pytest.mark.parametrize("given", [3, "lags", [1]])
+def test_options_that_are_no_table_are_refused(given) -> None:
+    for name in ("interface", "reward"):
+        with pytest.raises(InputError, match=f"{name} = .*; give a table"):
+            gym.make("FlexArm/Slew-Shaped-v0", **{name: given})
+
+
+def test_environments_without_arms_are_refused() -> None:
+    with pytest.raises(InputError, match="not on CartPoleEnv"):
+        Shaped(gym.make("CartPole-v1"))
+    with pytest.raises(InputError, match="not on CartPoleVectorEnv"):
+        ShapedVector(gym.make_vec("CartPole-v1", 2))
