@@ -69,7 +69,7 @@ def mode_of(structure: Structure, model: LinearModel, which: int, decompose: Dec
     inverse = _inverse(free.T @ inertial)
     answer = inverse @ free.T  # accelerations by forces
     dynamics = _dynamics(model, free, stiffness, damping, inverse)
-    c0, c1, v, w = decompose(dynamics)
+    c0, c1, v, w = _decomposed(dynamics, free.shape[1], decompose)
     rows, bodies = slice(free.shape[1], 2 * free.shape[1]), 2 if "motor" in model.names else 1
     force = _padded(answer @ drivers, dynamics, rows)
     force[..., rows.stop :, :] = model.extra_from_input
@@ -89,6 +89,25 @@ def mode_of(structure: Structure, model: LinearModel, which: int, decompose: Dec
         hold_drivers=drivers[..., :bodies, :] - inertial @ force[..., rows, :],
         hold_beam=model.beam_force[..., :bodies, :] - inertial @ along[..., rows, :],
     )
+
+
+def _decomposed(dynamics: Matrix, positions: int, decompose: Decompose) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+    """Decompose dynamics, with each lagged state counted from where it would settle at the present positions.
+
+    A position that only lags follow is then one on which nothing depends. Without damping it and its rate would have one and the
+    same eigenvector.
+    """
+    extra = slice(2 * positions, None)
+    settled = -np.linalg.solve(dynamics[..., extra, extra], dynamics[..., extra, :positions])
+    if not settled.any():
+        return decompose(dynamics)
+    turn = np.broadcast_to(np.eye(dynamics.shape[-1]), dynamics.shape).copy()
+    back = turn.copy()
+    turn[..., extra, :positions], back[..., extra, :positions] = settled, -settled
+    turned = back @ dynamics @ turn
+    turned[..., extra, :positions] = 0.0
+    c0, c1, v, w = decompose(turned)
+    return c0, c1, turn @ v, w @ back
 
 
 def _inverse(mass: Matrix) -> Matrix:
