@@ -106,6 +106,12 @@ def diagnose(
     ] = None,
     seed: Seed = 0,
     jobs: Annotated[int, typer.Option(min=1, max=256, help="Processes to use.")] = 2,
+    time_limit: Annotated[
+        float | None,
+        typer.Option(
+            metavar="SECONDS", help="Try nothing more after that time; conclude from what is known.", show_default="none"
+        ),
+    ] = None,
     settings: Annotated[
         bool, typer.Option("--settings", help="Print the numbers of the method instead; needs no recordings.")
     ] = False,
@@ -131,7 +137,7 @@ def diagnose(
     from flexarm_env.terminal import identification, tables
     from flexarm_env.terminal.provenance import provenance
 
-    result = identification.diagnose(model, runs, seed, jobs, rate)
+    result = identification.diagnose(model, runs, seed, jobs, rate, time_limit)
     save_findings(result, save, next_run)
     hand_out("diagnose", arm, runs, seed, json, result.as_json(), tables.diagnosis(result))
     if report is not None:

@@ -18,6 +18,7 @@ from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.origin import with_origin
 from flexarm_env.identify.replay.error_measure import Score, closed_loop_errors
 from flexarm_env.identify.results import NAMING, Candidate, Diagnosis
+from flexarm_env.identify.select.criteria import Criteria
 from flexarm_env.identify.select.trace import Trace, Tried
 from flexarm_env.identify.settings import Settings
 from flexarm_env.recordings.recording import Recording
@@ -78,6 +79,13 @@ def conclude(
         closed_loop=closed_loop_errors(dict(zip(free, (nominal, base.arm, model.arm), strict=True)), calibrator.dataset),
         budget=shares,
     )
+
+
+def verdict_of(trace: Trace, criteria: Criteria) -> str:
+    """Reach the verdict of a search; without effects it is "unknown" where one that was left out might have been accepted."""
+    verdict, base = criteria.verdict(trace.effects, trace.model), trace.steps[0].model
+    is_open = trace.stop is not None and not trace.accepted and not criteria.is_sufficient(base)
+    return "unknown" if is_open else verdict
 
 
 def with_outlook(found: Diagnosis, trace: Trace, calibrator: Calibrator) -> Diagnosis:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import replace
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibrator import Calibrator
-from flexarm_env.identify.conclude import at_fault, conclude, insufficient, with_outlook
+from flexarm_env.identify.conclude import at_fault, conclude, insufficient, verdict_of, with_outlook
+from flexarm_env.identify.deadline import Deadline
 from flexarm_env.identify.inspect.inspection import inspect_recordings
 from flexarm_env.identify.progress import Progress, ProgressCallback
 from flexarm_env.identify.replay.dataset import prepare
@@ -33,6 +33,7 @@ def diagnose(
     settings: Settings = SETTINGS,
     criteria: CriteriaFactory = ThresholdCriteria,
     rate: float | None = None,
+    time_limit: float | None = None,
 ) -> Diagnosis:
     """Diagnose an arm against recordings.
 
@@ -45,12 +46,13 @@ def diagnose(
         settings: numbers of the method.
         criteria: by which effects are accepted.
         rate: samples per second [Hz] that are kept; 0 keeps all. By default, as many as the arm needs.
+        time_limit: time [s] after which nothing more is tried. What runs then is finished, and the conclusion is drawn from it.
 
     Returns:
         The verdict, the missing effects, and the corrected arm; or the faults of the recordings, which are looked for first.
 
     Raises:
-        InputError: for recordings that do not fit the arm.
+        InputError: for recordings that do not fit the arm, and a time limit that is none.
 
     Example:
         >>> from flexarm_env import Arm, diagnose, simulate
@@ -59,17 +61,17 @@ def diagnose(
         >>> found.verdict, found.effects
         ('nothing_missing', [])
     """
-    began = time.perf_counter()
+    deadline = Deadline.after(time_limit)
     constants, searching, outlook = Progress.to(progress).split(1, 18, 1)
     nominal, dataset = prepare(arm, recordings, settings, rate)
     constants.at(0.0, "inspecting the recordings")
     inspected = inspect_recordings(arm, recordings, settings)
     if inspected.faults:
-        return _with_run_facts(at_fault(arm, inspected.faults, settings), [], began, seed)
+        return _with_run_facts(at_fault(arm, inspected.faults, settings), [], deadline, seed)
     notes, too_poor = preflight(dataset)
-    calibrator = Calibrator(nominal, dataset, Workers(jobs))
+    calibrator = Calibrator(nominal, dataset, Workers(jobs, deadline))
     if too_poor:
-        return _with_run_facts(insufficient(arm, calibrator), notes, began, seed)
+        return _with_run_facts(insufficient(arm, calibrator), notes, deadline, seed)
 
     constants.at(0.0, "refitting the constants")
     with calibrator.workers.threads():
@@ -80,12 +82,17 @@ def diagnose(
 
     trace = Search(calibrator, rules).run(base, searching)
 
-    verdict = rules.verdict(trace.effects, trace.model)
-    found = conclude(verdict, trace, nominal_score, arm, recordings, calibrator, seed)
-    outlook.at(0.0, "estimating detection limits")
-    found = with_outlook(found, trace, calibrator)
-    return _with_run_facts(found, notes + hold_out_notes(calibrator.dataset), began, seed)
+    outlook.at(0.0, "concluding")
+    found = conclude(verdict_of(trace, rules), trace, nominal_score, arm, recordings, calibrator, seed)
+    if deadline.is_over:
+        trace = trace.stopped_before("detection limits were estimated", deadline)
+    else:
+        outlook.at(0.5, "estimating detection limits")
+        found = with_outlook(found, trace, calibrator)
+    found = replace(found, stopped=None if time_limit is None else trace.stop is not None)
+    notes = notes + hold_out_notes(calibrator.dataset) + ([trace.stop.note] if trace.stop else [])
+    return _with_run_facts(found, notes, deadline, seed)
 
 
-def _with_run_facts(found: Diagnosis, notes: list[str], began: float, seed: int) -> Diagnosis:
-    return replace(found, notes=notes + found.notes, seconds=time.perf_counter() - began, seed=seed)
+def _with_run_facts(found: Diagnosis, notes: list[str], deadline: Deadline, seed: int) -> Diagnosis:
+    return replace(found, notes=notes + found.notes, seconds=deadline.elapsed, seed=seed)

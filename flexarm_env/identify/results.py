@@ -118,6 +118,7 @@ class Diagnosis(Shown):
         settings: numbers of the method.
         seconds: time taken.
         seed: recorded with the result.
+        stopped: whether a time limit left something out, which a note names; None without a limit.
         budget: shares of the excess of `error` that constants, each effect and nothing explain, in total and by signal.
     """
 
@@ -141,6 +142,7 @@ class Diagnosis(Shown):
     settings: Settings = SETTINGS
     closed_loop: dict[str, float] = field(default_factory=dict)
     budget: Budget = field(default_factory=Budget)
+    stopped: bool | None = None
 
     def as_json(self) -> dict[str, Any]:
         """Convert to plain data for `--json`."""
@@ -168,6 +170,7 @@ class Diagnosis(Shown):
             "next_run": self.next_run.as_json() if self.next_run else None,
             "trace": self.trace,
             "settings": self.settings.as_json(),
+            "stopped": self.stopped,
             "seconds": round(self.seconds, 1),
             "seed": self.seed,
         }

@@ -188,6 +188,8 @@ def verdict(diagnosis: Diagnosis) -> str:
         return f"No effect is missing: the arm explains these recordings to {final} × the noise."
     if diagnosis.verdict == "parameters":
         return f"No effect is missing. The constants were wrong: after a refit the error {change(error)}."
+    if diagnosis.verdict == "unknown" and diagnosis.stopped:
+        return f"No effect is named yet: the time was over. With the constants refitted the error {change(error)}."
     if diagnosis.verdict == "unknown":
         return (
             "An effect is missing, and none of the catalogue explains these recordings: "

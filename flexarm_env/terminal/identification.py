@@ -56,10 +56,13 @@ def add(effect: str, arm: Arm, recordings: Sequence[Recording], seed: int, rate:
         return flexarm_env.add(effect, arm, list(recordings), progress=bar, seed=seed, rate=rate)
 
 
-def diagnose(arm: Arm, recordings: Sequence[Recording], seed: int, jobs: int, rate: float | None = None) -> Diagnosis:
+def diagnose(
+    arm: Arm, recordings: Sequence[Recording], seed: int, jobs: int, rate: float | None = None, time_limit: float | None = None
+) -> Diagnosis:
     """Find out whether constants are wrong or an effect is missing."""
     with progress("diagnosing") as bar:
-        return flexarm_env.diagnose(arm, list(recordings), progress=bar, seed=seed, jobs=jobs, rate=rate)
+        given = list(recordings)
+        return flexarm_env.diagnose(arm, given, progress=bar, seed=seed, jobs=jobs, rate=rate, time_limit=time_limit)
 
 
 def write_page(

@@ -45,7 +45,7 @@ def identify(monkeypatch) -> SimpleNamespace:
         calls.log.append(("compare", arm, recordings))
         return fake_compare(arm, recordings)
 
-    def diagnose(arm, recordings, progress=None, seed=0, jobs=2, rate=None):
+    def diagnose(arm, recordings, progress=None, seed=0, jobs=2, rate=None, time_limit=None):
         calls.log.append(("diagnose", arm, recordings, seed, jobs))
         return fake_diagnosis(arm, calls.verdict, calls.effects, seed)
 

@@ -21,7 +21,7 @@ Brief = tuple[float, Calibration]
 def fit_models(
     calibrator: Calibrator, effects: Sequence[tuple[str, ...]], arms: Sequence[Arm], progress: Progress, thorough: bool = False
 ) -> list[Model]:
-    """Calibrate arms with the effects that they were given.
+    """Calibrate arms with the effects that they were given, as long as there is time.
 
     Args:
         calibrator: of the recordings.
@@ -32,7 +32,7 @@ def fit_models(
     """
     tasks = [(fit_model, (calibrator, names, arm, thorough)) for names, arm in zip(effects, arms, strict=True)]
     models = []
-    for model in calibrator.workers.map(tasks):
+    for model in calibrator.workers.map_in_time(tasks):
         models.append(model)
         progress.at(len(models) / len(tasks), f"refitting with {' and '.join(model.effects)}")
     return models
@@ -66,6 +66,8 @@ def fit_with_all_constants(
     reset = calibrator.reset_biased_constants(found, numbers.biased)
     starts = [(n, start) for n in names for start in _starts(calibrator, n, reset, trials)]
     fits = _fit_briefly(calibrator, [("", reset), *((n, reset.with_effect(n, **start)) for n, start in starts)], briefly)
+    if not fits:
+        return []
     control, _ = fits.pop("")
     fits = _start_smaller(calibrator, reset, fits, control, smaller)
     enough = numbers.briefly_better * excess(control)
@@ -76,9 +78,9 @@ def fit_with_all_constants(
 
 
 def fit_in_place(calibrator: Calibrator, without: Arm, effects: Sequence[str], progress: Progress) -> list[Model]:
-    """Calibrate an arm with each of some effects, started where it explains most of the arm's residual."""
+    """Calibrate an arm with each of some effects, started where it explains most of its residual, as long as there is time."""
     models = []
-    for model in calibrator.workers.map([(_fit_from_signature, (calibrator, effect, without)) for effect in effects]):
+    for model in calibrator.workers.map_in_time([(_fit_from_signature, (calibrator, effect, without)) for effect in effects]):
         models.append(model)
         progress.at(len(models) / len(effects), f"refitting with {model.effects[0]} instead")
     return models
@@ -112,10 +114,10 @@ def _start_smaller(
 
 
 def _fit_briefly(calibrator: Calibrator, arms: Sequence[tuple[str, Arm]], progress: Progress) -> dict[str, Brief]:
-    """Calibrate arms briefly; keep the best of each effect."""
+    """Calibrate arms briefly, as long as there is time; keep the best of each effect."""
     fits: dict[str, Brief] = {}
-    results = calibrator.workers.map([(calibrator.calibrate_briefly, (arm,)) for _, arm in arms])
-    for number, ((name, _), fit) in enumerate(zip(arms, results, strict=True), start=1):
+    results = calibrator.workers.map_in_time([(calibrator.calibrate_briefly, (arm,)) for _, arm in arms])
+    for number, ((name, _), fit) in enumerate(zip(arms, results, strict=False), start=1):
         fits[name] = min(fit, fits.get(name, fit), key=lambda f: f[0])
         progress.at(number / len(arms), f"fitting {name or 'nothing'} and all constants")
     return fits

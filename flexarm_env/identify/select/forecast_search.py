@@ -96,6 +96,10 @@ class ForecastSearch:
         """Numbers of the search."""
         return self.calibrator.settings.forecast_searching
 
+    @property
+    def _is_late(self) -> bool:
+        return self.calibrator.workers.deadline.is_over
+
     def propose(self, base: Model, explains: Callable[[Model], bool], progress: Progress) -> Proposal | None:
         """Search from the calibrated constants and from the nominal ones: the smallest model that explains the recordings.
 
@@ -103,11 +107,16 @@ class ForecastSearch:
             base: the model without effects, its constants calibrated.
             explains: whether a model does so.
             progress: of this search.
+
+        Returns:
+            What is proposed; None where no model explains them, or none that was found in time.
         """
         with self.calibrator.workers.threads():
             level = self._without_effects(base)
             known: Hypotheses = {frozenset(): min(level, key=lambda one: one.cost)}
             for stage in progress.split(*[1] * self.calibrator.settings.selecting.most_effects):
+                if self._is_late:
+                    break
                 best = min(one.cost for one in known.values())
                 searching, calibrating = stage.split(4, 1)
                 fresh = self._extend(level, searching)
@@ -137,6 +146,8 @@ class ForecastSearch:
         """Calibrate the most promising effects beside each hypothesis of a level."""
         fresh: Hypotheses = {}
         for one, stage in zip(level, progress.split(*[1] * len(level)), strict=True):
+            if self._is_late:
+                break
             names = candidates(one.arm)
             stage.at(0.0, f"weighing {len(names)} effects{_beside(one)}")
             found = promises(one.prediction, one.parameters, names)

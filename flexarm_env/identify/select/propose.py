@@ -57,7 +57,7 @@ def others(
     is_first = not found.effects
     if none_comes_near(criteria, models, found) and not (is_first and not criteria.trusts_constants()):
         unbiased = calibrator.uncalibrated(calibrator.nominal_with_effects_of(found.arm))
-        again = nearest(calibrator, criteria, screen(calibrator, [unbiased], screening), nearer)
+        again = nearest(calibrator, criteria, screen(calibrator, [unbiased], screening).trials, nearer)
         models = _best_of_each(criteria, [*models, *again])
     if none_comes_near(criteria, models, found) and is_first:  # a second effect's fits take minutes
         tried = [m.effects[0] for m in models]

@@ -35,16 +35,29 @@ class Trial:
     held_out: float
 
 
-def screen(calibrator: Calibrator, starts: Sequence[Calibration], progress: Progress) -> list[Trial]:
-    """Try every effect from some calibrations, and none; keep the best trial of each, best effect first."""
+@dataclass(frozen=True)
+class Screening:
+    """Trials of a screening.
+
+    Attributes:
+        trials: the best one of each effect, and that of none; best effect first.
+        untried: effects for which no time was left.
+    """
+
+    trials: list[Trial]
+    untried: tuple[str, ...] = ()
+
+
+def screen(calibrator: Calibrator, starts: Sequence[Calibration], progress: Progress) -> Screening:
+    """Try every effect from some calibrations, and none, as long as there is time."""
     bases = baselines(starts, calibrator.dataset)
     names = candidates(starts[0].arm)
     tasks = [(try_effect, (base, name)) for name in names for base in bases]
-    trials = [attempt(bases[0], None)]
-    for number, found in enumerate(calibrator.workers.map(tasks), start=1):
+    trials, number = [attempt(bases[0], None)], 0
+    for number, found in enumerate(calibrator.workers.map_in_time(tasks), start=1):
         trials += found
         progress.at(number / len(tasks), f"trying {len(names)} effects")
-    return best_trials(trials)
+    return Screening(best_trials(trials), tuple(names[number // len(bases) :]))
 
 
 def try_effect(base: Baseline, name: str) -> list[Trial]:

@@ -33,6 +33,14 @@ class Search:
     calibrator: Calibrator
     criteria: Criteria
 
+    @property
+    def is_late(self) -> bool:
+        """Whether the time that the search may take is over: what has not begun is left out, and the trace so far stands."""
+        return self.calibrator.workers.deadline.is_over
+
+    def _stop(self, trace: Trace, left_out: str) -> Trace:
+        return trace.stopped_before(left_out, self.calibrator.workers.deadline)
+
     def run(self, base: Model, progress: Progress) -> Trace:
         """Search from the calibrated constants: add the best effect, calibrate, again, until nothing is left or nothing helps."""
         most = self.calibrator.settings.selecting.most_effects
@@ -57,20 +65,31 @@ class Search:
         sufficient = self.criteria.is_sufficient(trace.model)
         if sufficient and trace.ranking:
             return trace
+        if self.is_late:
+            return self._stop(trace, _beside("an effect was tried", trace))
         screening, fitting, more = progress.split(6, 1, 3)
         starts = starts_of_search(self.calibrator, self.criteria, trace.model)
-        trials = screen(self.calibrator, starts, screening)
+        screened = screen(self.calibrator, starts, screening)
         if not trace.ranking:
-            trace = trace.then("screen", tried=_gains_of_screening(trials))
+            trace = trace.then("screen", tried=_gains_of_screening(screened.trials))
+        if screened.untried:
+            trace = self._stop(trace, _beside(f"these effects were tried: {', '.join(screened.untried)}", trace))
         if sufficient:
             return trace
+        return self._fit_screened(trace, screened.trials, fitting, more)
+
+    def _fit_screened(self, trace: Trace, trials: Sequence[Trial], fitting: Progress, more: Progress) -> Trace:
+        """Calibrate what screening found promising, and accept what is worthwhile."""
         models = nearest(self.calibrator, self.criteria, trials, fitting)
-        if not trace.accepted:
+        if not trace.accepted and not self.is_late:
             trace = self._combine_at_once(trace, models, more)
             if trace.accepted:
                 return trace
-        models = others(self.calibrator, self.criteria, models, trials, trace.model, more)
-        if trace.accepted:
+        if not self.is_late:
+            models = others(self.calibrator, self.criteria, models, trials, trace.model, more)
+        if self.is_late:
+            trace = self._stop(trace, _beside("every promising effect was calibrated", trace))
+        elif trace.accepted:
             trace = self._recalibrate(trace)
         if not models:
             return trace
@@ -86,9 +105,12 @@ class Search:
         Errors over a second or more show what is missing where one effect is. Where several hide each other, forecasts over a
         fraction of that are less misled.
         """
+        left_out = "models were compared by their forecasts"
+        if self.is_late:
+            return self._stop(trace, left_out)
         found = ForecastSearch(self.calibrator).propose(trace.steps[0].model, self.criteria.is_fully_explained, progress)
         if found is None:
-            return trace
+            return self._stop(trace, f"all {left_out}") if self.is_late else trace
         longer = trace.then("forecast", found.model, found.accepted, found.tried)
         return self.drop_useless(self.swap(longer, progress, untried=True))
 
@@ -120,8 +142,13 @@ class Search:
                 break
             is_companion = trace.model.arm.known[effect].pairs_with_all
             if untried or is_companion or self.criteria.leaves_room(trace.model):
+                if self.is_late:
+                    trace = self._stop(trace, f"{effect} was compared with its rivals")
+                    break
                 comparison = compare_rivals(self.calibrator, self.criteria, effect, trace.model, progress)
                 trace = exchange(trace, place, comparison)
+                if comparison.untried:
+                    trace = self._stop(trace, f"{effect} was compared with {', '.join(comparison.untried)}")
         names = trace.effects
         kept = [
             replace(a, equivalent=tuple(n for n in a.equivalent if n == a.equivalent[0] or n not in names))
@@ -132,6 +159,8 @@ class Search:
     def drop_useless(self, trace: Trace) -> Trace:
         """Drop an effect that later ones have made useless."""
         for effect in trace.effects if len(trace.accepted) > 1 else []:
+            if self.is_late:
+                return self._stop(trace, f"the model without {effect} was calibrated")
             calibration = self.calibrator.calibrate(trace.model.arm.without_effect(effect))
             without = judge((), calibration, self.calibrator.dataset)
             measure = self.criteria.measure([without.score, trace.model.score])
@@ -171,12 +200,18 @@ class Search:
         alike = [m for m in models if len(m.effects) == len(winner.effects)]
         trace, rivals = self._rivals(trace, winner, alike, measure)
         winner, names = rivals[0], tuple(m.effects[0] for m in rivals)
-        with self.calibrator.workers.threads():
-            calibration = self.calibrator.polish(winner.calibration)
-        model = judge((), calibration, self.calibrator.dataset)
+        model = self._polish(winner)
         first, *companions = winner.effects
         added = [Accepted(first, names, model.score), *(Accepted(n, (n,), model.score) for n in companions)]
         return trace.then("accept", model, [*trace.accepted, *added])
+
+    def _polish(self, model: Model) -> Model:
+        """Continue the calibration of a model, as long as there is time."""
+        if self.is_late:
+            return model
+        with self.calibrator.workers.threads():
+            calibration = self.calibrator.polish(model.calibration)
+        return judge((), calibration, self.calibrator.dataset)
 
     def _simplest(self, models: Sequence[Model], measure: Measure) -> Model:
         """Choose the best model; a single effect where a companion beside one adds nothing worthwhile."""
@@ -190,7 +225,8 @@ class Search:
     def _rivals(self, trace: Trace, winner: Model, models: Sequence[Model], measure: Measure) -> tuple[Trace, list[Model]]:
         """Find the models between which the data do not decide, best first, each calibrated from nominal constants.
 
-        A calibration that began with biased constants leaves more than the difference between near rivals.
+        A calibration that began with biased constants leaves more than the difference between near rivals. Where no time is
+        left for another, all near rivals are taken as undecided.
         """
         calibrator, dataset = self.calibrator, self.calibrator.dataset
         left = measure(winner.score)
@@ -202,6 +238,9 @@ class Search:
         arms = [calibrator.nominal_with_effects_of(m.arm) for m in first]
         again = fit_models(calibrator, [m.effects for m in first], arms, Progress())
         rank = self.criteria.rank(winner.score, measure, dataset)
+        if len(again) < len(first):
+            trace = self._stop(trace, f"rivals of {winner.effects[0]} were calibrated again")
+            return trace, sorted(first, key=rank)
         better = [min(pair, key=rank) for pair in zip(first, again, strict=True)]
         if len(winner.effects) == 1:
             trace = trace.then("fit", tried=_gains(trace, better, measure))
@@ -244,6 +283,11 @@ def _gains(trace: Trace, models: Sequence[Model], measure: Measure) -> list[Trie
 def _gains_of_screening(trials: Sequence[Trial]) -> list[Tried]:
     control = control_of(trials)
     return [Tried(t.effect, _share(1.0 - t.held_out / control.held_out)) for t in trials if t.effect]
+
+
+def _beside(left_out: str, trace: Trace) -> str:
+    """Add the accepted effects to what is left out."""
+    return f"{left_out} beside {' and '.join(trace.effects)}" if trace.effects else left_out
 
 
 def _share(gain: float) -> float:

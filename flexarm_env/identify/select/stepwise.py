@@ -24,10 +24,10 @@ def extend_chain(calibrator: Calibrator, criteria: Criteria, chain: Sequence[Mod
         progress: of this extension.
 
     Returns:
-        The chain; empty where it cannot be extended to a model that is fully explained.
+        The chain; empty where it cannot be extended to a model that is fully explained, or not in time.
     """
     models = list(chain)
-    while len(models) <= calibrator.settings.selecting.most_effects:
+    while len(models) <= calibrator.settings.selecting.most_effects and not calibrator.workers.deadline.is_over:
         last = models[-1]
         step = _best_addition(calibrator, last, progress)
         if step is None:
@@ -44,7 +44,7 @@ def extend_chain(calibrator: Calibrator, criteria: Criteria, chain: Sequence[Mod
 
 def _best_addition(calibrator: Calibrator, last: Model, progress: Progress) -> Model | None:
     """Calibrate with the effect that fits best beside those of a model, as far as it goes where it comes near."""
-    trials = screen(calibrator, [last.calibration], progress)
+    trials = screen(calibrator, [last.calibration], progress).trials
     best = min(trials, key=lambda trial: trial.cost)
     if not best.effect:
         return None

@@ -21,12 +21,14 @@ class RivalComparison:
         best: the model with it.
         alike: models with others that leave as little, by effect.
         tried: all effects that were compared.
+        untried: rivals for which no time was left.
     """
 
     effect: str
     best: Model
     alike: dict[str, Model]
     tried: frozenset[str]
+    untried: tuple[str, ...] = ()
 
 
 def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now: Model, progress: Progress) -> RivalComparison:
@@ -41,9 +43,11 @@ def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now:
     """
     without = now.arm.without_effect(effect)
     names = rivals_of(effect, without)
-    rivals = [m for m in fit_in_place(calibrator, without, names, progress) if not m.at_bound]
+    fitted = fit_in_place(calibrator, without, names, progress)
+    untried = tuple(names[len(fitted) :])
+    rivals = [m for m in fitted if not m.at_bound]
     if not rivals:
-        return RivalComparison(effect, now, {}, frozenset([effect]))
+        return RivalComparison(effect, now, {}, frozenset([effect]), untried)
     measure = criteria.measure([now.score, *(m.score for m in rivals)])
     rank = criteria.rank(now.score, measure, calibrator.dataset)
     rivals.sort(key=rank)
@@ -56,7 +60,7 @@ def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now:
     taken = first.effects[0] if better else effect
     level = criteria.equivalence_level(every[taken].score, measure)
     alike = {name: m for name, m in every.items() if name != taken and measure(m.score) <= level}
-    return RivalComparison(taken, every[taken], alike, frozenset(every))
+    return RivalComparison(taken, every[taken], alike, frozenset(every), untried)
 
 
 def _polish_near(calibrator: Calibrator, rival: Model, now: Model) -> Model:

@@ -8,6 +8,7 @@ from typing import Any
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibration import Calibration
+from flexarm_env.identify.deadline import Deadline
 from flexarm_env.identify.replay.error_measure import Score
 from flexarm_env.identify.select.model import Model
 
@@ -60,16 +61,36 @@ class Step:
 
 
 @dataclass(frozen=True)
+class Stop:
+    """The stop of a search as its time was over.
+
+    Attributes:
+        after: time [s] at which it stopped.
+        left_out: the first that was left out, as in "an effect was tried".
+    """
+
+    after: float
+    left_out: str
+
+    @property
+    def note(self) -> str:
+        """One line for a person."""
+        return f"stopped after {self.after:.1f} s, before {self.left_out}"
+
+
+@dataclass(frozen=True)
 class Trace:
     """The history of a search.
 
     Attributes:
         steps: in their order; the first one calibrates the constants.
         chain: models of one more effect each, which stepwise addition goes on with.
+        stop: of the search, as its time was over; None where nothing was left out.
     """
 
     steps: tuple[Step, ...]
     chain: tuple[Model, ...]
+    stop: Stop | None = None
 
     @classmethod
     def begin(cls, base: Model) -> Trace:
@@ -86,6 +107,10 @@ class Trace:
         taken = self.accepted if accepted is None else tuple(accepted)
         found = replace(model or self.model, effects=tuple(a.effect for a in taken))
         return replace(self, steps=(*self.steps, Step(action, found, taken, tuple(tried))))
+
+    def stopped_before(self, left_out: str, deadline: Deadline) -> Trace:
+        """Record what is left out as the time is over; only the first counts."""
+        return replace(self, stop=self.stop or Stop(deadline.elapsed, left_out))
 
     @property
     def model(self) -> Model:
