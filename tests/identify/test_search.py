@@ -141,7 +141,7 @@ def test_effects_that_explain_only_together_are_added_one_by_one():
     nominal = Arm.load("thesis")
     made = nominal.with_effect("cable_stiffness", stiffness=0.2, rest_angle=0.0).with_effect("tach_filter", time=0.02)
     search, trace = begun(nominal, [simulate(made, experiment, seed=3, duration=6.0) for experiment in ("square", "sweep")])
-    found = search.combine(trace, Progress(), all_constants=True)
+    found = search.combine(trace, Progress())
     assert sorted(found.effects) == ["cable_stiffness", "tach_filter"]
     assert [a.equivalent for a in found.accepted] == [(effect,) for effect in found.effects]
     assert found.model.score.windows < 1.05 < found.accepted[0].score.windows < trace.model.score.windows
@@ -155,6 +155,6 @@ def test_what_no_catalogue_holds_is_not_explained_one_by_one():
     buzz = run.signals["strain_base"] + 0.1 * np.sign(np.sin(2.0 * np.pi * 7.3 * run.time))
     search, trace = begun(nominal, [replace(run, signals={**run.signals, "strain_base": buzz})])
     assert trace.model.score.windows > 3.0
-    found = search.combine(trace, Progress(), all_constants=True)
+    found = search.combine(trace, Progress())
     assert found.effects == []
     assert found.model == trace.model

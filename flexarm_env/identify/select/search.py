@@ -56,7 +56,9 @@ class Search:
         if len(trace.accepted) == 1:
             trace = self.swap(trace, swapping)
         trace = self.drop_useless(trace)
-        if base.score.windows <= self.calibrator.settings.errors.explained or self.criteria.is_fully_explained(trace.model):
+        errors, explained = self.calibrator.settings.errors, self.criteria.is_fully_explained(trace.model)
+        leaves_nothing = explained and trace.model.score.windows < errors.nothing_left
+        if leaves_nothing or base.score.windows <= errors.explained:
             return trace
         return self.ask_forecasts(trace, forecasting)
 
@@ -100,7 +102,7 @@ class Search:
         return self._accept(trace, possible) if possible else trace
 
     def ask_forecasts(self, trace: Trace, progress: Progress) -> Trace:
-        """Accept the model that forecasts ask for in place of another, if it alone explains the data.
+        """Accept the model that forecasts ask for in place of another, if it alone explains the data, or leaves nothing of them.
 
         Errors over a second or more show what is missing where one effect is. Where several hide each other, forecasts over a
         fraction of that are less misled.
@@ -108,7 +110,13 @@ class Search:
         left_out = "models were compared by their forecasts"
         if self.is_late:
             return self._stop(trace, left_out)
-        found = ForecastSearch(self.calibrator).propose(trace.steps[0].model, self.criteria.is_fully_explained, progress)
+
+        enough = self.calibrator.settings.errors.nothing_left if self.criteria.is_fully_explained(trace.model) else np.inf
+
+        def is_better(found: Model) -> bool:
+            return found.score.windows < enough and self.criteria.is_fully_explained(found)
+
+        found = ForecastSearch(self.calibrator).propose(trace.steps[0].model, is_better, progress)
         if found is None:
             return self._stop(trace, f"all {left_out}") if self.is_late else trace
         longer = trace.then("forecast", found.model, found.accepted, found.tried)
