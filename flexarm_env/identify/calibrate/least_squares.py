@@ -66,34 +66,35 @@ class Solution:
     steps: StepSizes
 
 
-def jacobian(residual: Residual, x: Floats, steps: Floats) -> Floats:
-    """Compute central differences (rows, steps) of the residual over steps to either side.
+def jacobian(residual: Residual, x: Floats, steps: Floats, first: int = 0) -> Floats:
+    """Compute central differences (rows, steps) of the residual over steps to either side, of x from the first on.
 
     Columns are computed in one thread unless a `Workers.threads` context is open.
     """
 
     def column(k: int, width: float) -> Floats:
-        return (residual(_aside(x, k, width)) - residual(_aside(x, k, -width))) / (2.0 * width)
+        there, back = _aside(x, first + k, width), _aside(x, first + k, -width)
+        return (residual(there) - residual(back)) / (2.0 * width)
 
     return _in_columns(column, steps) if len(steps) else np.zeros((len(residual(x)), 0))
 
 
-def slopes(residual: Residual, x: Floats, here: Floats, steps: Floats, first: int = 0) -> Floats:
-    """Compute differences (rows, steps) of the residual over steps to one side, of x from the first on.
+def slopes(residual: Residual, x: Floats, here: Floats, steps: Floats) -> Floats:
+    """Compute differences (rows, x) of the residual over steps to one side.
 
-    Half the replays of central ones. Steps up are taken, or steps down where a value has no room above.
+    Half the replays of central ones, where steps are so narrow that the residual is straight over them. Steps up are taken, or
+    steps down where a value has no room above.
 
     Args:
         residual: whitened residual (rows,).
         x: where (x,).
         here: the residual there (rows,).
-        steps: widths.
-        first: place in x of the first.
+        steps: widths (x,).
     """
 
     def column(k: int, width: float) -> Floats:
-        change = residual(_aside(x, first + k, width)) - here
-        return change / width if change.any() else (here - residual(_aside(x, first + k, -width))) / width
+        change = residual(_aside(x, k, width)) - here
+        return change / width if change.any() else (here - residual(_aside(x, k, -width))) / width
 
     return _in_columns(column, steps) if len(steps) else np.zeros((len(here), 0))
 
@@ -137,37 +138,28 @@ def minimise(
         tolerance: relative decrease of the cost at which to stop, unless narrower differences may help.
         frozen: Jacobian (rows, first columns) taken over from elsewhere and not computed again.
     """
-    problem, r = Problem(residual, prior, numbers, tolerance), residual(x)
+    problem, r = _Problem(residual, prior, numbers, tolerance), residual(x)
     point = _Point(x, r, cost_of(r, x, prior), numbers.first_damping)
     known = 0 if frozen is None else frozen.shape[1]
     j = np.empty((len(r), len(x)))
     if frozen is not None:
         j[:, :known] = frozen
-    return _minimise(problem, point, j, steps, known, iterations)
-
-
-def minimise_onward(problem: Problem, x: Floats, begun: Floats, steps: StepSizes, iterations: int) -> Solution:
-    """Minimise from a Jacobian of another level, which is computed anew only where it promises more than it gives.
-
-    Args:
-        problem: residual, priors and rules.
-        x: where to start.
-        begun: that Jacobian (rows, x).
-        steps: of the differences.
-        iterations: most Jacobians, this one included.
-    """
-    r = problem.residual(x)
-    point = _Point(x, r, cost_of(r, x, problem.prior), problem.numbers.first_damping)
-    j = begun.copy()
-    point = _descend(problem, point, j)
-    if iterations < 2 or _promise(j, point, problem.prior) < problem.tolerance * point.cost:
-        return Solution(point.x, point.cost, point.residual, j, steps)
-    steps = steps.adapted(point.residual, j, grow=True)
-    return _minimise(problem, point, j, steps, 0, iterations - 1)
+    for _ in range(iterations):
+        if known < len(x):
+            j[:, known:] = jacobian(residual, point.x, steps.now, known)
+        before = point.cost
+        point = _descend(problem, point, j)
+        stays = before - point.cost < tolerance * before
+        finer = steps.adapted(point.residual, j[:, known:], grow=not stays)
+        ends = stays or _promise(j, point, prior) < tolerance * point.cost
+        if ends and np.all(finer.now > numbers.shrinks * steps.now):
+            break
+        steps = finer
+    return Solution(point.x, point.cost, point.residual, j, steps)
 
 
 @dataclass(frozen=True)
-class Problem:
+class _Problem:
     """A sum of squares to be minimised.
 
     Attributes:
@@ -193,23 +185,6 @@ class _Point:
     damping: float
 
 
-def _minimise(problem: Problem, point: _Point, j: Floats, steps: StepSizes, known: int, iterations: int) -> Solution:
-    """Compute a Jacobian but for its known columns, descend along it, and again, until it promises or gives too little."""
-    numbers = problem.numbers
-    for _ in range(iterations):
-        if known < len(point.x):
-            j[:, known:] = slopes(problem.residual, point.x, point.residual, steps.now, known)
-        before = point.cost
-        point = _descend(problem, point, j)
-        stays = before - point.cost < problem.tolerance * before
-        finer = steps.adapted(point.residual, j[:, known:], grow=not stays)
-        ends = stays or _promise(j, point, problem.prior) < problem.tolerance * point.cost
-        if ends and np.all(finer.now > numbers.shrinks * steps.now):
-            break
-        steps = finer
-    return Solution(point.x, point.cost, point.residual, j, steps)
-
-
 def _promise(j: Floats, point: _Point, prior: Floats) -> float:
     """Compute the decrease of the cost that an undamped step would bring if the residual were linear."""
     slope = j.T @ point.residual + point.x / prior**2
@@ -231,10 +206,10 @@ def descend(residual: Residual, x: Floats, slopes: Floats, prior: Floats, number
     """
     r, j = residual(x), slopes.copy()
     point = _Point(x, r, cost_of(r, x, prior), numbers.first_damping)
-    return _descend(Problem(residual, prior, numbers, 0.0), point, j).x, j
+    return _descend(_Problem(residual, prior, numbers, 0.0), point, j).x, j
 
 
-def _descend(problem: Problem, point: _Point, j: Floats) -> _Point:
+def _descend(problem: _Problem, point: _Point, j: Floats) -> _Point:
     """Take damped steps along one Jacobian, which each corrects in place for the next, while they promise and give enough."""
     numbers, prior = problem.numbers, problem.prior
     x, r, cost, damping = point.x, point.residual, point.cost, point.damping

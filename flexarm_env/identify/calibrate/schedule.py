@@ -1,4 +1,4 @@
-"""The levels of process noise that one calibration goes through, each from the slopes of the one before."""
+"""The levels of process noise that one calibration goes through, each from where the one before ended."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibration import Calibration
-from flexarm_env.identify.calibrate.least_squares import Problem, Solution, StepSizes, minimise, minimise_onward
+from flexarm_env.identify.calibrate.least_squares import Solution, StepSizes, minimise
 from flexarm_env.identify.calibrate.objective import Objective, objective_at
 from flexarm_env.identify.calibrate.parameters import FitParameters
 from flexarm_env.identify.replay.dataset import Dataset
@@ -55,11 +55,11 @@ class Schedule:
             if here is not None and here.excess_factor < settings.errors.nothing_left:
                 break
             objective = here if here is not None and noise == own else self._objective(x, noise)
-            found = objective, self._minimise(objective, x, steps, found)
+            found = objective, self._minimise(objective, x, steps, last=False)
             x, steps = found[1].x, found[1].steps
         if passes:
             objective = self._objective(x, own)
-            found = objective, self._narrow(objective, x, steps)
+            found = objective, self._minimise(objective, x, steps, last=True)
         assert found is not None
         return Calibration(self.parameters.apply(self.arm, found[1].x), found[1], found[0])
 
@@ -68,21 +68,10 @@ class Schedule:
         objective = objective_at(self.arm, self.dataset, self.parameters, torque_noise)
         return replace(objective, starts=self.starts).weighted_by(self.parameters.apply(self.arm, x))
 
-    def _minimise(self, objective: Objective, x: Floats, steps: StepSizes, before: tuple[Objective, Solution] | None) -> Solution:
-        """Minimise at one level, from the slopes of the level before."""
-        numbers, prior, tolerance = self.dataset.settings.least_squares, objective.weights.prior, self._tolerance(last=False)
-        if before is None:
-            return minimise(objective.residual, x, prior, steps, numbers, self.iterations, tolerance)
-        sigma, begun = before[0].weights.sigma / objective.weights.sigma, before[1].jacobian
-        problem = Problem(objective.residual, prior, numbers, tolerance)
-        return minimise_onward(problem, x, begun * objective.rows_of(sigma)[:, None], steps, self.iterations)
-
-    def _narrow(self, objective: Objective, x: Floats, steps: StepSizes) -> Solution:
-        """Minimise over narrow differences."""
-        numbers, prior, tolerance = self.dataset.settings.least_squares, objective.weights.prior, self._tolerance(last=True)
-        narrow = steps.narrowed(numbers.narrow)
-        return minimise(objective.residual, x, prior, narrow, numbers, self.iterations, tolerance)
-
-    def _tolerance(self, last: bool) -> float:
-        numbers = self.dataset.settings.calibrating
-        return numbers.final_tolerance if last else numbers.tolerance
+    def _minimise(self, objective: Objective, x: Floats, steps: StepSizes, last: bool) -> Solution:
+        """Minimise at one level; over narrow differences at the last."""
+        settings = self.dataset.settings
+        numbers, calibrating = settings.least_squares, settings.calibrating
+        tolerance = calibrating.final_tolerance if last else calibrating.tolerance
+        steps = steps.narrowed(numbers.narrow) if last else steps
+        return minimise(objective.residual, x, objective.weights.prior, steps, numbers, self.iterations, tolerance)

@@ -100,16 +100,19 @@ class ForecastSearch:
     def _is_late(self) -> bool:
         return self.calibrator.workers.deadline.is_over
 
-    def propose(self, base: Model, explains: Callable[[Model], bool], progress: Progress) -> Proposal | None:
+    def propose(
+        self, base: Model, explained: frozenset[str], explains: Callable[[Model], bool], progress: Progress
+    ) -> Proposal | None:
         """Search from the calibrated constants and from the nominal ones: the smallest model that explains the recordings.
 
         Args:
             base: the model without effects, its constants calibrated.
-            explains: whether a model does so.
+            explained: effects of a model that explains them already; none where none does.
+            explains: whether another model does so, and better.
             progress: of this search.
 
         Returns:
-            What is proposed; None where no model explains them, or none that was found in time.
+            What is proposed; None where no model explains them, none that was found in time, or forecasts ask for no other.
         """
         with self.calibrator.workers.threads():
             level = self._without_effects(base)
@@ -124,6 +127,8 @@ class ForecastSearch:
                 known |= fresh | {frozenset(one.effects): one for one in level}
                 chosen = min(level, key=lambda one: one.cost, default=None)
                 if chosen is None or chosen.cost > best - self.numbers.least_gain:
+                    break
+                if explained == frozenset(chosen.effects):
                     break
                 calibrating.at(0.0, f"calibrating {' and '.join(chosen.effects)}")
                 model = self._model(chosen)

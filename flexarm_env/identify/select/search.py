@@ -105,18 +105,20 @@ class Search:
         """Accept the model that forecasts ask for in place of another, if it alone explains the data, or leaves nothing of them.
 
         Errors over a second or more show what is missing where one effect is. Where several hide each other, forecasts over a
-        fraction of that are less misled.
+        fraction of that are less misled. Where both ask for the same effects and these explain the data, they stand.
         """
         left_out = "models were compared by their forecasts"
         if self.is_late:
             return self._stop(trace, left_out)
 
-        enough = self.calibrator.settings.errors.nothing_left if self.criteria.is_fully_explained(trace.model) else np.inf
+        is_explained = self.criteria.is_fully_explained(trace.model)
+        enough = self.calibrator.settings.errors.nothing_left if is_explained else np.inf
 
         def is_better(found: Model) -> bool:
             return found.score.windows < enough and self.criteria.is_fully_explained(found)
 
-        found = ForecastSearch(self.calibrator).propose(trace.steps[0].model, is_better, progress)
+        explained = frozenset(trace.effects if is_explained else ())
+        found = ForecastSearch(self.calibrator).propose(trace.steps[0].model, explained, is_better, progress)
         if found is None:
             return self._stop(trace, f"all {left_out}") if self.is_late else trace
         longer = trace.then("forecast", found.model, found.accepted, found.tried)
