@@ -23,6 +23,13 @@ class FixtureCompliance(Effect):
     looks_like = "a vibration that the arm's own parts do not have, with the hub held as well"
     confused_with = ("gear_compliance", "root_compliance", "higher_modes")
 
+    @classmethod
+    def starts(cls) -> list[dict[str, float]]:
+        """Resonances over a decade of frequency, of light and heavy stands: no slope leads from one to another."""
+        own = super().starts()[0]
+        softer, heavier = (1.0, 0.1, 0.01), (1.0, 10.0)
+        return [{**own, "stiffness": k * own["stiffness"], "inertia": j * own["inertia"]} for k in softer for j in heavier]
+
     @staticmethod
     def structure(structure: Structure, stiffness: float, inertia: float, damping_time: float) -> None:
         """Put the stator on a damped spring."""

@@ -115,12 +115,7 @@ def test_effects_that_differ_only_at_rest_are_told_apart(setting, effect):
 @pytest.mark.slow(minutes=4)
 @pytest.mark.parametrize(
     "case",
-    [
-        "position_friction-3",
-        pytest.param(
-            "sensor_offset-3", marks=pytest.mark.xfail(reason="the offset of a gage is no longer named here; not yet mended")
-        ),
-    ],
+    ["position_friction-3", "sensor_offset-3"],
 )
 def test_constants_that_made_up_for_an_effect_do_not_hide_it(case):
     """Cases of the benchmark in which the refit bends the constants most: what is tried from there fails."""
