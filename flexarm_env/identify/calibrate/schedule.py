@@ -52,7 +52,7 @@ class Schedule:
         found: tuple[Objective, Solution] | None = None
         for noise in (*levels, *(passes - 1) * (own,)):
             here = self._objective(x, own) if passes else None
-            if here is not None and here.excess_factor < settings.errors.nothing_left:
+            if here is not None and here.excess_factor < settings.errors.near:
                 break
             objective = here if here is not None and noise == own else self._objective(x, noise)
             found = objective, self._minimise(objective, x, steps, last=False)
