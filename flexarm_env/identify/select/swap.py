@@ -64,9 +64,9 @@ def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now:
 
 
 def _polish_near(calibrator: Calibrator, rival: Model, now: Model) -> Model:
-    """Continue the calibration of a rival, unless it is far off and the model is near, so that it has no chance."""
-    errors = calibrator.settings.errors
-    if now.score.windows <= errors.close and rival.score.windows >= errors.far_off:
+    """Continue the calibration of a rival, unless the model is nearer by so much that it has no chance."""
+    errors, left, rest = calibrator.settings.errors, now.score.windows, rival.score.windows
+    if (left <= errors.near and rest >= errors.close) or (left <= errors.close and rest >= errors.far_off):
         return rival
     with calibrator.workers.threads():
         polished = judge(rival.effects, calibrator.polish(rival.calibration), calibrator.dataset)
