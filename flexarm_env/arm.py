@@ -8,7 +8,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from flexarm_env.arm_file import arm_from_table, read_arm, write_arm
+from flexarm_env.arm_file import arm_from_table, read_arm
+from flexarm_env.arm_text import write_arm
 from flexarm_env.control.law import ControlLaw
 from flexarm_env.display import Shown
 from flexarm_env.effects import Catalogue, Effect, catalogue
