@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexarm_env.plant.beam import Beam, Matrix, spread_out, turned
 from flexarm_env.plant.drive import drive_model, motor_current
@@ -36,38 +38,44 @@ def _assemble_one(key: Key) -> LinearModel:
     return model
 
 
-def _assemble(s: Structure) -> LinearModel:
-    names = ["hub"] + (["motor"] if s.separate_motor else []) + (["fixture"] if s.soft_fixture else [])
-    beam = Beam(s.elements, s.length, s.mass_per_length, s.bending_stiffness) if s.elements else None
-    # a beam coordinate stands where its own numbering puts it, the root's slope only if it can turn
-    kept = [] if beam is None else ([1] if s.soft_root else []) + list(range(2, beam.size))
-    names += [] if beam is None else (["root"] if s.soft_root else []) + _node_names(s.elements)
-    place = np.array([0, *range(len(names) - len(kept), len(names))], dtype=int)
-    size = len(names)
-    mass, damping, stiffness = (np.zeros((*np.shape(s.hub_inertia), size, size)) for _ in range(3))
+@dataclass(frozen=True)
+class Numbering:
+    """The coordinates of an arm, and those of its beam among them.
 
-    def spread(rows: Matrix) -> Matrix:
-        wide = np.zeros((*rows.shape[:-1], size))
-        wide[..., place] = rows[..., [0, *kept]]
-        if s.soft_fixture:  # what is measured from the fixed line turns with the fixture, too
-            wide[..., names.index("fixture")] = rows[..., 0]
+    Attributes:
+        names: of all coordinates.
+        kept: of the beam's own coordinates, hub first, those that the arm has: the root's slope only if it can turn.
+        place: where these stand among all.
+    """
+
+    names: list[str]
+    kept: list[int]
+    place: NDArray[np.int_]
+
+    @classmethod
+    def of(cls, s: Structure, beam: Beam | None) -> Numbering:
+        """Number the coordinates of an arm."""
+        names = ["hub"] + (["motor"] if s.separate_motor else []) + (["fixture"] if s.soft_fixture else [])
+        own = [] if beam is None else ([1] if s.soft_root else []) + list(range(2, beam.size))
+        names += [] if beam is None else (["root"] if s.soft_root else []) + _node_names(s.elements)
+        return cls(names, [0, *own], np.array([0, *range(len(names) - len(own), len(names))], dtype=int))
+
+    def spread(self, rows: Matrix) -> Matrix:
+        """Spread rows on the beam's own coordinates over all."""
+        wide = np.zeros((*rows.shape[:-1], len(self.names)))
+        wide[..., self.place] = rows[..., self.kept]
+        if "fixture" in self.names:  # what is measured from the fixed line turns with the fixture, too
+            wide[..., self.names.index("fixture")] = rows[..., 0]
         return wide
 
+
+def _assemble(s: Structure) -> LinearModel:
+    beam = Beam(s.elements, s.length, s.mass_per_length, s.bending_stiffness) if s.elements else None
+    numbering = Numbering.of(s, beam)
+    names, size = numbering.names, len(numbering.names)
+    mass, damping, stiffness = (np.zeros((*np.shape(s.hub_inertia), size, size)) for _ in range(3))
     if beam is not None:
-        pick = np.ix_([0, *kept], [0, *kept])
-        where = np.ix_(place, place)
-        mass[..., where[0], where[1]] += beam.mass[..., pick[0], pick[1]]
-        stiffness[..., where[0], where[1]] += beam.stiffness[..., pick[0], pick[1]]
-        damping[..., where[0], where[1]] += (spread_out(s.beam_damping) * beam.stiffness)[..., pick[0], pick[1]]
-        tip = spread(beam.deflection_rows(beam.length[..., None], absolute=True))
-        own_tip = _without(tip, names, "fixture")
-        mass += spread_out(s.tip_mass + s.payload) * (turned(own_tip) * own_tip)
-        turn = np.zeros(size)
-        turn[0] = turn[-1] = 1.0
-        mass += spread_out(s.tip_inertia) * np.outer(turn, turn)
-        if s.soft_root:
-            root = names.index("root")
-            stiffness[..., root, root] += 1.0 / s.root_compliance
+        _add_beam(s, beam, numbering, mass, damping, stiffness)
     motor = names.index("motor") if s.separate_motor else 0
     mass[..., 0, 0] += s.hub_inertia + (0.0 if beam is not None else s.payload * s.length**2)
     if s.soft_fixture:
@@ -78,22 +86,55 @@ def _assemble(s: Structure) -> LinearModel:
     damping[..., 0, 0] += s.viscous * (1.0 - share)
     stiffness[..., 0, 0] += s.hub_stiffness
     model = drive_model(s, names, motor, mass, damping, stiffness)
-    hub = motor if s.has_joint else 0
-    add_sensors(s, model, Coordinates(size, motor, s.gear_ratio, beam, spread, hub_body=hub, drive=motor_current(s, size, motor)))
-    if beam is None and exceeds(s.link_moment, 0.0):
-        model.beam_force = np.array(model.beam_force)
-        model.beam_force[..., 0, 0] += s.payload * s.length / s.link_moment
-        if s.soft_fixture:
-            model.beam_force[..., names.index("fixture"), 0] = model.beam_force[..., 0, 0]
+    hub, current = motor if s.has_joint else 0, motor_current(s, size, motor)
+    add_sensors(s, model, Coordinates(size, motor, s.gear_ratio, beam, numbering.spread, hub_body=hub, drive=current))
     if beam is not None:
-        places, weights = beam.drag_points()
-        rows = spread(beam.deflection_rows(places, absolute=True))
-        drag = turned(weights[..., None] * rows)
-        own, hung = (np.asarray(mass)[..., None] * tip[..., 0, :] for mass in (s.tip_mass, s.payload))
-        own = own + np.asarray(s.mass_per_length)[..., None] * drag.sum(axis=-1)
-        model.beam_velocity = np.concatenate([rows, np.zeros_like(rows[..., :1, :])], axis=-2)
-        model.beam_force = np.concatenate([drag, ((own + hung) / own[..., :1])[..., None]], axis=-1)
+        _add_beam_forces(s, beam, numbering, model)
+    elif exceeds(s.link_moment, 0.0):
+        _add_link_force(s, names, model)
     return model
+
+
+def _tip(beam: Beam, numbering: Numbering) -> Matrix:
+    """Compute the row of the deflection at the tip."""
+    return numbering.spread(beam.deflection_rows(beam.length[..., None], absolute=True))
+
+
+def _add_beam(s: Structure, beam: Beam, numbering: Numbering, mass: Matrix, damping: Matrix, stiffness: Matrix) -> None:
+    """Add a beam with its tip and payload to the matrices."""
+    pick = np.ix_(numbering.kept, numbering.kept)
+    where = np.ix_(numbering.place, numbering.place)
+    mass[..., where[0], where[1]] += beam.mass[..., pick[0], pick[1]]
+    stiffness[..., where[0], where[1]] += beam.stiffness[..., pick[0], pick[1]]
+    damping[..., where[0], where[1]] += (spread_out(s.beam_damping) * beam.stiffness)[..., pick[0], pick[1]]
+    own_tip = _without(_tip(beam, numbering), numbering.names, "fixture")
+    mass += spread_out(s.tip_mass + s.payload) * (turned(own_tip) * own_tip)
+    turn = np.zeros(len(numbering.names))
+    turn[0] = turn[-1] = 1.0
+    mass += spread_out(s.tip_inertia) * np.outer(turn, turn)
+    if s.soft_root:
+        root = numbering.names.index("root")
+        stiffness[..., root, root] += 1.0 / s.root_compliance
+
+
+def _add_beam_forces(s: Structure, beam: Beam, numbering: Numbering, model: LinearModel) -> None:
+    """Add the forces of drag and weight on a beam, and the velocities on which drag depends."""
+    places, weights = beam.drag_points()
+    rows = numbering.spread(beam.deflection_rows(places, absolute=True))
+    drag = turned(weights[..., None] * rows)
+    tip = _tip(beam, numbering)
+    own, hung = (np.asarray(mass)[..., None] * tip[..., 0, :] for mass in (s.tip_mass, s.payload))
+    own = own + np.asarray(s.mass_per_length)[..., None] * drag.sum(axis=-1)
+    model.beam_velocity = np.concatenate([rows, np.zeros_like(rows[..., :1, :])], axis=-2)
+    model.beam_force = np.concatenate([drag, ((own + hung) / own[..., :1])[..., None]], axis=-1)
+
+
+def _add_link_force(s: Structure, names: list[str], model: LinearModel) -> None:
+    """Add the payload to the weight of a rigid link."""
+    model.beam_force = np.array(model.beam_force)
+    model.beam_force[..., 0, 0] += s.payload * s.length / s.link_moment
+    if s.soft_fixture:
+        model.beam_force[..., names.index("fixture"), 0] = model.beam_force[..., 0, 0]
 
 
 def _without(rows: Matrix, names: list[str], name: str) -> Matrix:
