@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from flexarm_env.arm_file import AUTO
 from flexarm_env.control.table import law_table
@@ -12,6 +12,8 @@ from flexarm_env.files import write_whole
 from flexarm_env.parameters import SECTIONS, defaults_of
 
 if TYPE_CHECKING:
+    from tomlkit.items import Table
+
     from flexarm_env.arm import Arm
 
 
@@ -41,34 +43,11 @@ def arm_text(arm: Arm) -> str:
         document["description"] = arm.description
     if arm.fixed:
         document["fixed"] = list(arm.fixed)
-    for section, values in arm.constants.items():
-        table = tomlkit.table()
-        if section == "drive":
-            table["input"] = arm.input
-        defaults = defaults_of(section, arm.input, arm.constants)
-        for key, value in values.items():
-            if defaults.get(key) != value:
-                _put(table, key, value, SECTIONS[section][key].unit)
-        document[section] = table
-    sensors = tomlkit.table(is_super_table=True)
-    for signal, values in arm.sensors.items():
-        table = tomlkit.table()
-        for key, value in values.items():
-            setting = arm.parameter(f"sensors.{signal}.{key}")
-            if key == "noise" and signal in arm.auto_noise:
-                table[key] = AUTO
-            elif setting.typical != value:
-                _put(table, key, value, setting.unit)
-        sensors[signal] = table
-    document["sensors"] = sensors
-    effects = tomlkit.table(is_super_table=True)
-    for name, values in arm.effects.items():
-        table = tomlkit.table()
-        for key, value in values.items():
-            _put(table, key, value, arm.known[name].parameters[key].unit)
-        effects[name] = table
+    for section in arm.constants:
+        document[section] = _constants(arm, section)
+    document["sensors"] = _sensors(arm)
     if arm.effects:
-        document["effects"] = effects
+        document["effects"] = _effects(arm)
     controller = law_table(arm.controller, arm.input) if arm.controller else None
     for key, extra in (
         ("columns", arm.columns),
@@ -82,7 +61,51 @@ def arm_text(arm: Arm) -> str:
     return tomlkit.dumps(document)
 
 
-def _put(table: Any, key: str, value: float, unit: str) -> None:
+def _constants(arm: Arm, section: str) -> Table:
+    """Make the table of a section of base constants."""
+    import tomlkit
+
+    table = tomlkit.table()
+    if section == "drive":
+        table["input"] = arm.input
+    defaults = defaults_of(section, arm.input, arm.constants)
+    for key, value in arm.constants[section].items():
+        if defaults.get(key) != value:
+            _put(table, key, value, SECTIONS[section][key].unit)
+    return table
+
+
+def _sensors(arm: Arm) -> Table:
+    """Make the table of the sensors' settings."""
+    import tomlkit
+
+    sensors = tomlkit.table(is_super_table=True)
+    for signal, values in arm.sensors.items():
+        table = tomlkit.table()
+        for key, value in values.items():
+            setting = arm.parameter(f"sensors.{signal}.{key}")
+            if key == "noise" and signal in arm.auto_noise:
+                table[key] = AUTO
+            elif setting.typical != value:
+                _put(table, key, value, setting.unit)
+        sensors[signal] = table
+    return sensors
+
+
+def _effects(arm: Arm) -> Table:
+    """Make the table of the effects' parameters."""
+    import tomlkit
+
+    effects = tomlkit.table(is_super_table=True)
+    for name, values in arm.effects.items():
+        table = tomlkit.table()
+        for key, value in values.items():
+            _put(table, key, value, arm.known[name].parameters[key].unit)
+        effects[name] = table
+    return effects
+
+
+def _put(table: Table, key: str, value: float, unit: str) -> None:
     if key == "elements":
         table[key] = int(value)
     elif unit and math.isfinite(value):
