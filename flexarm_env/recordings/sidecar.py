@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from flexarm_env import units
 from flexarm_env.errors import InputError
@@ -13,9 +14,35 @@ from flexarm_env.recordings.checks import check_conditions
 from flexarm_env.recordings.conditions import CONDITIONS
 from flexarm_env.recordings.messages import file_error
 
+if TYPE_CHECKING:
+    from flexarm_env.recordings.recording import Recording
+
 TABLE = "conditions"
 #: Tables of arm files and column maps, which may lie beside a recording under the same name.
 _OTHERS = ("drive", "columns", "hub", "sensors")
+
+
+def with_sidecar(recording: Recording, path: Path) -> Recording:
+    """Add the conditions in the file beside a recording, with a note that names it.
+
+    Args:
+        recording: as read.
+        path: of its file.
+
+    Raises:
+        InputError: for a faulty file beside it, and for a condition that both state.
+    """
+    beside = sidecar_of(path)
+    if beside is None:
+        return recording
+    stated = read_conditions(beside)
+    twice = [name for name in stated if name in recording.conditions]
+    if twice:
+        raise file_error(path, f"condition '{twice[0]}' comes twice, in the file and in {beside.name}; keep one of the two")
+    if not stated:
+        return recording
+    note = f"{beside.name} states {', '.join(f'{name} = {value:g}' for name, value in stated.items())}"
+    return replace(recording, conditions=recording.conditions | stated, notes=(*recording.notes, note))
 
 
 def sidecar_of(path: Path) -> Path | None:
