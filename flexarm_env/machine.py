@@ -1,16 +1,71 @@
-"""The linear part and the weight of an arm from its base constants."""
+"""The linear part, the laws and the weight of an arm, from its constants, sensors and effects."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
+from flexarm_env.effects import Effect
+from flexarm_env.effects.catalogue import LAW_PORTS
+from flexarm_env.plant.active_laws import VARYING_PORTS, ActiveLaw
 from flexarm_env.plant.structure import Structure
+
+if TYPE_CHECKING:
+    from flexarm_env.arm import Arm
 
 #: Standard gravity [m/s²].
 GRAVITY = 9.80665
 
 Constants = Mapping[str, Mapping[str, float]]
+
+
+def structure_of(arm: Arm) -> Structure:
+    """Build the linear part of an arm, with sensors and all linear effects applied."""
+    structure = structure_of_constants(arm.constants, arm.input)
+    structure.sensors |= {
+        signal: arm.sensor(signal).channel(s["gain"], s["offset"], s["filter"], s["position"])
+        for signal, s in arm.sensors.items()
+    }
+    for name, values in arm.present():
+        port = arm.known[name].port("structure")
+        if port is not None:
+            port(structure, **values)
+    return structure
+
+
+def laws_of(arm: Arm) -> list[ActiveLaw]:
+    """List the nonlinear laws of an arm's weight and of all effects that are present, with their parameters."""
+    active = _gravity(arm)
+    yields = any(arm.known[name].port("presliding") for name, _ in arm.present())
+    for name, values in arm.present():
+        effect = arm.known[name]
+        for port in LAW_PORTS:
+            if effect.port(port) is not None:
+                varies = effect.varies if port == "friction" else port in VARYING_PORTS
+                parameters = tuple(values[key] for key in effect.parameters)
+                share = 0.0 if yields else _motor_share(arm, effect)
+                active.append(ActiveLaw(arm.known.kinds[name, port], port, parameters, varies, share, _read_by(arm, effect)))
+    return active
+
+
+def _motor_share(arm: Arm, effect: type[Effect]) -> float:
+    """Part of an effect's friction on the motor; the hub in front of an elastic joint turns with it."""
+    if effect.motor_share:
+        return arm.constants["drive"][effect.motor_share]
+    return 1.0 if "joint" in arm.constants else 0.0
+
+
+def _gravity(arm: Arm) -> list[ActiveLaw]:
+    """List the law of the weight of link or beam: that of a tilted base, with the torque that the constants give."""
+    torque, uphill = weight(arm.constants)
+    return [ActiveLaw(arm.known.kinds["base_tilt", "weight"], "weight", (torque, uphill), varies=True)] if torque else []
+
+
+def _read_by(arm: Arm, effect: type[Effect]) -> tuple[str, ...]:
+    """Names of the arm's signals on which an effect's sensor law acts."""
+    gages = "strain" in effect.reads
+    return tuple(s for s in arm.sensors if s in effect.reads or (gages and arm.sensor(s).strain))
 
 
 def structure_of_constants(constants: Constants, command: str) -> Structure:
