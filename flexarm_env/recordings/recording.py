@@ -29,7 +29,7 @@ from flexarm_env.recordings.formats.lerobot import with_info
 from flexarm_env.recordings.joined import read_joined, recording_files, run_name
 from flexarm_env.recordings.messages import file_error
 from flexarm_env.recordings.samples import samples_of
-from flexarm_env.recordings.sidecar import with_sidecar
+from flexarm_env.recordings.sidecar import conditions_beside
 from flexarm_env.sensors import known_sensors
 
 Floats = NDArray[np.float64]
@@ -235,8 +235,7 @@ class Recording(Shown):
         except InputError as error:
             raise file_error(path, error) from None
         controller = None if layout is None else layout.controller
-        complete = [with_sidecar(one, path) for one in recordings]
-        return [replace(one, controller=controller, source=str(path), sha256=checksum) for one in complete]
+        return [replace(_with_sidecar(one, path), controller=controller, source=str(path), sha256=checksum) for one in recordings]
 
     @classmethod
     def read_all(
@@ -287,7 +286,11 @@ class Recording(Shown):
             0.5,1.0,0.1
             <BLANKLINE>
         """
-        write_whole(Path(path), csv_text(self))
+        columns = {"time": self.time, self.input_kind: self.command}
+        columns |= {name: self.signals[name] for name in known_sensors() if name in self.signals}
+        if self.reference is not None:
+            columns["reference"] = self.reference
+        write_whole(Path(path), csv_text(columns, self.conditions))
 
     def part(self, start: float = 0.0, stop: float | None = None) -> Recording:
         """Cut out the samples with start <= time < stop [s]; without `stop`, up to the end.
@@ -354,6 +357,12 @@ def _recording(
         conditions=conditions,
         notes=samples.notes,
     )
+
+
+def _with_sidecar(recording: Recording, path: Path) -> Recording:
+    """Add the conditions in the file beside a recording."""
+    stated, notes = conditions_beside(path, recording.conditions)
+    return replace(recording, conditions=recording.conditions | stated, notes=(*recording.notes, *notes))
 
 
 def _share_measured(values: Floats) -> str:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from flexarm_env import units
 from flexarm_env.errors import InputError
@@ -14,35 +13,31 @@ from flexarm_env.recordings.checks import check_conditions
 from flexarm_env.recordings.conditions import CONDITIONS
 from flexarm_env.recordings.messages import file_error
 
-if TYPE_CHECKING:
-    from flexarm_env.recordings.recording import Recording
-
 TABLE = "conditions"
 #: Tables of arm files and column maps, which may lie beside a recording under the same name.
 _OTHERS = ("drive", "columns", "hub", "sensors")
 
 
-def with_sidecar(recording: Recording, path: Path) -> Recording:
-    """Add the conditions in the file beside a recording, with a note that names it.
+def conditions_beside(path: Path, given: Mapping[str, float]) -> tuple[dict[str, float], tuple[str, ...]]:
+    """Read the conditions in the file beside a recording, and notes that name it; none where there is none.
 
     Args:
-        recording: as read.
-        path: of its file.
+        path: of the recording.
+        given: conditions that its own file states.
 
     Raises:
         InputError: for a faulty file beside it, and for a condition that both state.
     """
     beside = sidecar_of(path)
     if beside is None:
-        return recording
+        return {}, ()
     stated = read_conditions(beside)
-    twice = [name for name in stated if name in recording.conditions]
+    twice = [name for name in stated if name in given]
     if twice:
         raise file_error(path, f"condition '{twice[0]}' comes twice, in the file and in {beside.name}; keep one of the two")
     if not stated:
-        return recording
-    note = f"{beside.name} states {', '.join(f'{name} = {value:g}' for name, value in stated.items())}"
-    return replace(recording, conditions=recording.conditions | stated, notes=(*recording.notes, note))
+        return {}, ()
+    return stated, (f"{beside.name} states {', '.join(f'{name} = {value:g}' for name, value in stated.items())}",)
 
 
 def sidecar_of(path: Path) -> Path | None:
