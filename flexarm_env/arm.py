@@ -326,7 +326,7 @@ class Arm(Shown):
         """Build the linear part of the arm, with all linear effects applied."""
         from flexarm_env.machine import structure_of
 
-        return structure_of(self)
+        return structure_of(self.constants, self.input, self.sensors, self.present(), self.known)
 
     def present(self) -> list[tuple[str, Values]]:
         """Effects with a value other than null, by name, with their values."""
@@ -336,7 +336,7 @@ class Arm(Shown):
         """List the nonlinear laws of all effects that are present, with their parameters."""
         from flexarm_env.machine import laws_of
 
-        return laws_of(self)
+        return laws_of(self.constants, self.signals, self.present(), self.known)
 
     def plant(self, interval: float) -> Plant:
         """Compile the arm for simulation.
