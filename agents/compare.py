@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import time
 from collections.abc import Sequence
@@ -18,12 +17,11 @@ from agents.curves import draw_curves
 from agents.evaluate import RATE, evaluate_controller
 from agents.goals import THESIS, cell_of, verdicts
 from agents.learning.artefact import Artefact
+from agents.results import origin_of, write_results
 from agents.train import FOLDER
-from flexarm_env import Arm, InputError, __version__
+from flexarm_env import Arm, InputError
 from flexarm_env.controllers import CONTROLLERS
-from flexarm_env.files import write_whole
 from flexarm_env.tasks import TASKS
-from flexarm_env.terminal.provenance import commit
 from flexarm_env.trials.measures import MEASURES, measure
 from flexarm_env.trials.rollout import roll_out
 from flexarm_env.trials.sets import FIRST_SEED, SETS
@@ -123,10 +121,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(error, file=sys.stderr)
         return 2
     result = {
-        "command": f"python -m agents.compare --arm {asked.arm} --count {asked.count}",
-        "version": __version__,
-        "commit": commit(),
-        "seed": FIRST_SEED,
+        **origin_of(f"python -m agents.compare --arm {asked.arm} --count {asked.count}", FIRST_SEED),
         "seconds": round(time.perf_counter() - began, 1),
         "arms": asked.count,
         "measures": {name: {"unit": unit, "meaning": meaning} for name, (unit, meaning) in MEASURES.items()},
@@ -134,11 +129,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "policies": about(policies),
         "tasks": found,
     }
-    asked.save.mkdir(parents=True, exist_ok=True)
-    write_whole(asked.save / "policies.json", json.dumps(result, indent=1, ensure_ascii=False) + "\n")
-    write_whole(asked.save / "policies.md", report_of(result))
+    place = write_results(asked.save, "policies", result, report_of(result))
     draw_curves({name: [Artefact.load(path) for path in paths] for name, paths in policies.items()}, asked.save / "curves.png")
-    print(f"{asked.save / 'policies.md'}: {len(policies)} configurations, {len(CONTROLLERS)} controllers, {result['seconds']} s")
+    print(f"{place}: {len(policies)} configurations, {len(CONTROLLERS)} controllers, {result['seconds']} s")
     return 0
 
 

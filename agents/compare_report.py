@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from agents.goals import THESIS, against_classical, against_thesis
+from agents.markdown import origin_line, row, with_interval
 from agents.report import COLUMNS
 
 #: Task and set of the goals.
@@ -17,7 +18,7 @@ def report_of(result: Mapping[str, Any]) -> str:
     lines = [
         "# Policies",
         "",
-        f"`{result['command']}`, version {result['version']}, commit {result['commit']}, seed {result['seed']}.",
+        origin_line(result),
         f"Interquartile means over {result['arms']} arms that no training saw and, for policies, over training runs, with 95 %",
         "bootstrap intervals in which runs and arms are drawn again; unsettled ones as means. An arm that never settles counts",
         "with the whole stretch. The worst tenth is the mean settling time of the slowest tenth of all episodes. Less is better",
@@ -69,36 +70,27 @@ def _goals(result: Mapping[str, Any]) -> list[str]:
                 fields = (
                     f"`{name}`",
                     verdict["measure"],
-                    _interval(verdict["policy"], 3),
+                    with_interval(verdict["policy"], 3),
                     f"`{verdict['rival']}`",
-                    _interval(verdict["rival_has"], 3),
+                    with_interval(verdict["rival_has"], 3),
                     f"{100 * verdict['less_by']:.0f} %",
                     _probability(verdict["improvement"]),
                     goal,
                 )
-                lines.append(_line(fields))
+                lines.append(row(fields))
     return lines
 
 
 def _rows(cells: Mapping[str, Any], policies: Mapping[str, Any]) -> list[str]:
     head = ["", "", *(heading for _, heading, _ in COLUMNS), "worst tenth [s]"]
-    lines = [_line(head), "|---|---|" + "---:|" * (len(COLUMNS) + 1)]
+    lines = [row(head), "|---|---|" + "---:|" * (len(COLUMNS) + 1)]
     for name, cell in cells.items():
         learned = f"learned, n = {len(policies[name]['runs'])}" if name in policies else ""
         kind = learned or ("thesis" if name in THESIS else "classical")
-        columns = (_interval(cell[key], digits) for key, _, digits in COLUMNS)
-        lines.append(_line([f"`{name}`", kind, *columns, f"{cell['settling_time']['worst_tenth']:.2f}"]))
+        columns = (with_interval(cell[key], digits) for key, _, digits in COLUMNS)
+        lines.append(row([f"`{name}`", kind, *columns, f"{cell['settling_time']['worst_tenth']:.2f}"]))
     return lines
-
-
-def _line(entries: Sequence[str]) -> str:
-    return "| " + " | ".join(entries) + " |"
 
 
 def _probability(value: Mapping[str, float]) -> str:
     return f"{value['probability']:.2f} ({value['low']:.2f} to {value['high']:.2f})"
-
-
-def _interval(value: Mapping[str, float], digits: int) -> str:
-    centre = value["iqm"] if "iqm" in value else value["mean"]
-    return f"{centre:.{digits}f} ({value['low']:.{digits}f} to {value['high']:.{digits}f})"

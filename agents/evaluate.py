@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import time
 from collections.abc import Mapping, Sequence
@@ -14,13 +13,12 @@ import numpy as np
 from joblib import Parallel, delayed
 
 from agents.report import table_of
+from agents.results import origin_of, write_results
 from agents.statistics import mean_interval, paired_difference
-from flexarm_env import Arm, InputError, __version__
+from flexarm_env import Arm, InputError
 from flexarm_env.controllers import CONTROLLERS, make_controller
 from flexarm_env.errors import did_you_mean
-from flexarm_env.files import write_whole
 from flexarm_env.tasks import TASKS
-from flexarm_env.terminal.provenance import commit
 from flexarm_env.trials.measures import MEASURES, measure
 from flexarm_env.trials.rollout import roll_out
 from flexarm_env.trials.score import worst_tenth
@@ -92,11 +90,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     began = time.perf_counter()
     first_seed = DEVELOPMENT_SEED if asked.development else FIRST_SEED
     cells = evaluate(asked.controllers, asked.arm, asked.count, asked.jobs, first_seed)
+    command = f"python -m agents.evaluate --arm {asked.arm} --count {asked.count}{' --development' * asked.development}"
     result = {
-        "command": f"python -m agents.evaluate --arm {asked.arm} --count {asked.count}{' --development' * asked.development}",
-        "version": __version__,
-        "commit": commit(),
-        "seed": first_seed,
+        **origin_of(command, first_seed),
         "seconds": round(time.perf_counter() - began, 1),
         "arms": asked.count,
         "measures": {name: {"unit": unit, "meaning": meaning} for name, (unit, meaning) in MEASURES.items()},
@@ -104,10 +100,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "controllers": {name: CONTROLLERS[name].meaning for name in asked.controllers},
         "cells": cells,
     }
-    asked.save.mkdir(parents=True, exist_ok=True)
-    write_whole(asked.save / "baselines.json", json.dumps(result, indent=1, ensure_ascii=False) + "\n")
-    write_whole(asked.save / "baselines.md", table_of(result))
-    print(f"{asked.save / 'baselines.md'}: {len(asked.controllers)} controllers in {result['seconds']} s")
+    place = write_results(asked.save, "baselines", result, table_of(result))
+    print(f"{place}: {len(asked.controllers)} controllers in {result['seconds']} s")
     return 0
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
+
+from agents.markdown import origin_line, row, with_interval
 
 #: Measure, heading and digits of the columns.
 COLUMNS = (
@@ -25,7 +27,7 @@ def table_of(result: Mapping[str, Any]) -> str:
     lines = [
         "# Baselines",
         "",
-        f"`{result['command']}`, version {result['version']}, commit {result['commit']}, seed {result['seed']}.",
+        origin_line(result),
         f"Means over {result['arms']} arms, the same for every controller, with 95 % bootstrap intervals over arms. An arm",
         "that never settles counts with the whole stretch; the worst tenth is the mean settling time of the slowest tenth of the",
         "arms. Less is better everywhere. Tuned controllers were searched on other arms than these.",
@@ -42,28 +44,20 @@ def table_of(result: Mapping[str, Any]) -> str:
 
 def _rows(cells: Mapping[str, Any]) -> list[str]:
     head = ["controller", *(heading for _, heading, _ in COLUMNS), "worst tenth [s]"]
-    rows = [_line(head), "|---|" + "---:|" * (len(COLUMNS) + 1)]
+    rows = [row(head), "|---|" + "---:|" * (len(COLUMNS) + 1)]
     for name, cell in cells.items():
-        columns = (_with_interval(cell[key], digits) for key, _, digits in COLUMNS)
-        rows.append(_line([f"`{name}`", *columns, f"{cell['settling_time']['worst_tenth']:.2f}"]))
+        columns = (with_interval(cell[key], digits) for key, _, digits in COLUMNS)
+        rows.append(row([f"`{name}`", *columns, f"{cell['settling_time']['worst_tenth']:.2f}"]))
     return rows
-
-
-def _line(fields: Sequence[str]) -> str:
-    return "| " + " | ".join(fields) + " |"
-
-
-def _with_interval(value: Mapping[str, float], digits: int) -> str:
-    return f"{value['mean']:.{digits}f} ({value['low']:.{digits}f} to {value['high']:.{digits}f})"
 
 
 def summary_of(result: Mapping[str, Any], task: str = "slew") -> str:
     """Write a short table for README.md: settling, steady error and residual strain of one task."""
     columns = (("settling_time", "settling [s]", 2), ("steady_error", "error [°]", 2), ("residual_strain", "strain [V]", 3))
     head = ["controller", *(f"{arms}: {heading}" for arms in SHORT_SETS for _, heading, _ in columns)]
-    lines = [_line(head), "|---|" + "---:|" * (len(head) - 1)]
+    lines = [row(head), "|---|" + "---:|" * (len(head) - 1)]
     for name in SHORT:
         cells = [result["cells"][task][arms][name] for arms in SHORT_SETS]
         values = [f"{cell[key]['mean']:.{digits}f}" for cell in cells for key, _, digits in columns]
-        lines.append(_line([f"`{name}`", *values]))
+        lines.append(row([f"`{name}`", *values]))
     return "\n".join(lines) + "\n"

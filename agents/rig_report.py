@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from agents.goals import cell_of
+from agents.markdown import origin_line, row, with_interval
 from agents.statistics import RESAMPLES, Interval, drawn_again, with_ends
 from flexarm_env.trials.score import cost
 
@@ -47,7 +48,7 @@ def report_of(result: Mapping[str, Any]) -> str:
     lines = [
         "# From the simulator to the machine",
         "",
-        f"`{result['command']}`, version {result['version']}, commit {result['commit']}, seed {result['seed']}.",
+        origin_line(result),
         f"The slew over 100° on a machine that hides something, {result['episodes']} episodes with other noise; interquartile",
         "means over episodes and training runs, 95 % bootstrap intervals in which both are drawn again. Less is better.",
     ]
@@ -59,10 +60,10 @@ def report_of(result: Mapping[str, Any]) -> str:
         named = ", ".join(diagnosis["effects"]) or "none named"
         lines += ["", f"## {case}: {diagnosis['settings']}", ""]
         lines.append(f"Hidden: {diagnosis['hidden']}. Diagnosis: `{diagnosis['verdict']}`, {named}, in {diagnosis['seconds']} s.")
-        lines += ["", "| for the arm | runs | " + " | ".join(heading for _, heading, _ in COLUMNS) + " |", "|---|" + "---:|" * 4]
+        lines += ["", row(["for the arm", "runs", *(heading for _, heading, _ in COLUMNS)]), "|---|" + "---:|" * 4]
         for name, cell in found["cells"].items():
-            parts = [f"{cell[key]['iqm']:.{d}f} ({cell[key]['low']:.{d}f} to {cell[key]['high']:.{d}f})" for key, _, d in COLUMNS]
-            lines.append(f"| {name} | {found['runs'][name]} | " + " | ".join(parts) + " |")
+            parts = (with_interval(cell[key], digits) for key, _, digits in COLUMNS)
+            lines.append(row([name, str(found["runs"][name]), *parts]))
     return "\n".join(lines) + "\n"
 
 
@@ -71,7 +72,7 @@ def _in_short(cases: Mapping[str, Any]) -> list[str]:
         "By how much the geometric mean of settling time, error and strain is less for the corrected arm. Bold: the interval",
         "excludes 0.",
         "",
-        "| corrected | against | " + " | ".join(cases) + " |",
+        row(["corrected", "against", *cases]),
         "|---|---|" + "---:|" * len(cases),
     ]
     pairs = dict.fromkeys(
@@ -79,7 +80,7 @@ def _in_short(cases: Mapping[str, Any]) -> list[str]:
     )
     for who, rival in pairs:
         entries = [_gain(found["corrected_less_by"][who][rival]) for found in cases.values()]
-        lines.append(f"| {who} | {rival} | " + " | ".join(entries) + " |")
+        lines.append(row([who, rival, *entries]))
     return lines
 
 

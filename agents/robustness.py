@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import time
 from collections.abc import Mapping, Sequence
@@ -17,15 +16,14 @@ from agents.compare import find_policies
 from agents.evaluate import RATE, evaluate_controller
 from agents.goals import mean
 from agents.learning.artefact import Artefact
+from agents.results import origin_of, write_results
 from agents.robustness_report import report_of
 from agents.statistics import Interval, improvement, stratified_interval
 from agents.train import FOLDER as WEIGHTS
-from flexarm_env import Arm, InputError, __version__
+from flexarm_env import Arm, InputError
 from flexarm_env.controllers import CONTROLLERS
 from flexarm_env.errors import did_you_mean
-from flexarm_env.files import write_whole
 from flexarm_env.tasks import TASKS
-from flexarm_env.terminal.provenance import commit
 from flexarm_env.trials.measures import MEASURES, measure
 from flexarm_env.trials.rollout import roll_out
 from flexarm_env.trials.score import cost, worst_tenth
@@ -121,10 +119,7 @@ def result_of(
     policies = [name for name, who in agents.items() if not isinstance(who, str)]
     words = [*asked.names, "--arm", asked.arm, "--count", str(asked.count), *["--development"] * asked.development]
     return {
-        "command": " ".join(["python -m agents.robustness", *words]),
-        "version": __version__,
-        "commit": commit(),
-        "seed": first_seed_of(asked),
+        **origin_of(" ".join(["python -m agents.robustness", *words]), first_seed_of(asked)),
         "arms": asked.count,
         "seconds": round(seconds, 1),
         "sets": {name: found.meaning for name, found in ROBUSTNESS.items()},
@@ -160,10 +155,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(error, file=sys.stderr)
         return 2
     result = result_of(asked, agents, values, time.perf_counter() - began)
-    asked.save.mkdir(parents=True, exist_ok=True)
-    write_whole(asked.save / "robustness.json", json.dumps(result, indent=1, ensure_ascii=False) + "\n")
-    write_whole(asked.save / "robustness.md", report_of(result))
-    print(f"{asked.save / 'robustness.md'}: {len(agents)} controllers and policies, {result['seconds']} s")
+    place = write_results(asked.save, "robustness", result, report_of(result))
+    print(f"{place}: {len(agents)} controllers and policies, {result['seconds']} s")
     return 0
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
+
+from agents.markdown import origin_line, row, with_interval
 
 #: Measure, heading and digits of the columns of one set.
 COLUMNS = (
@@ -19,7 +21,7 @@ def report_of(result: Mapping[str, Any]) -> str:
     lines = [
         "# Robustness",
         "",
-        f"`{result['command']}`, version {result['version']}, commit {result['commit']}, seed {result['seed']}.",
+        origin_line(result),
         f"The slew over 100° on {result['arms']} arms in each set, the same for all: payload 0 to 0.3 kg, constants ±10 %,",
         "friction ±20 %, and one thing more. Neither controllers nor policies were told of it, but for the control rate, for",
         "which each was made again. Means with 95 % bootstrap intervals, in which runs and arms are drawn again. An arm that",
@@ -47,10 +49,10 @@ def report_of(result: Mapping[str, Any]) -> str:
 
 def _over_sets(result: Mapping[str, Any], measure: str, digits: int) -> list[str]:
     sets = list(result["cells"])
-    lines = [_line(["", "runs", *sets]), "|---|---:|" + "---:|" * len(sets)]
+    lines = [row(["", "runs", *sets]), "|---|---:|" + "---:|" * len(sets)]
     for name in result["cells"][sets[0]]:
         cells = [result["cells"][arms][name] for arms in sets]
-        lines.append(_line([f"`{name}`", str(cells[0]["runs"]), *(f"{c[measure]['mean']['value']:.{digits}f}" for c in cells)]))
+        lines.append(row([f"`{name}`", str(cells[0]["runs"]), *(f"{c[measure]['mean']['value']:.{digits}f}" for c in cells)]))
     return lines
 
 
@@ -64,24 +66,16 @@ def _verdicts(result: Mapping[str, Any]) -> list[str]:
     ]
     for arms, verdict in result["verdicts"].items():
         if verdict is not None:
-            each = (_interval(found, 2) for found in verdict["probability"].values())
+            each = (with_interval(found, 2) for found in verdict["probability"].values())
             names = (f"`{verdict[kind]}`" for kind in ("policy", "controller"))
-            lines.append(_line([arms, *names, f"{100.0 * verdict['less_by']:.0f} %", *each]))
+            lines.append(row([arms, *names, f"{100.0 * verdict['less_by']:.0f} %", *each]))
     return lines
 
 
 def _rows(cells: Mapping[str, Any]) -> list[str]:
     heads = [part for _, heading, _ in COLUMNS for part in (heading, "worst tenth")]
-    lines = [_line(["", "runs", *heads]), "|---|---:|" + "---:|" * len(heads)]
+    lines = [row(["", "runs", *heads]), "|---|---:|" + "---:|" * len(heads)]
     for name, cell in cells.items():
-        parts = [_interval(cell[key][what], digits) for key, _, digits in COLUMNS for what in ("mean", "worst_tenth")]
-        lines.append(_line([f"`{name}`", str(cell["runs"]), *parts]))
+        parts = [with_interval(cell[key][what], digits) for key, _, digits in COLUMNS for what in ("mean", "worst_tenth")]
+        lines.append(row([f"`{name}`", str(cell["runs"]), *parts]))
     return lines
-
-
-def _line(entries: Sequence[str]) -> str:
-    return "| " + " | ".join(entries) + " |"
-
-
-def _interval(value: Mapping[str, float], digits: int) -> str:
-    return f"{value['value']:.{digits}f} ({value['low']:.{digits}f} to {value['high']:.{digits}f})"

@@ -24,6 +24,7 @@ from agents.evaluate import RATE
 from agents.learning.artefact import Artefact
 from agents.learning.options import Plan
 from agents.learning.plan_file import read_plan
+from agents.results import origin_of, write_results
 from agents.rig import drive
 from agents.rig_controllers import NOMINAL, RETUNED, controllers_of, retune, tuned_place
 from agents.rig_report import report_of, verdict_of
@@ -148,19 +149,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("\nstopped; the same command goes on", file=sys.stderr)
         return 130
     result = {
-        "command": f"python -m agents.sim_to_rig --count {asked.count}",
-        "version": __version__,
-        "commit": commit(),
-        "seed": FIRST_SEED,
+        **origin_of(f"python -m agents.sim_to_rig --count {asked.count}", FIRST_SEED),
         "episodes": asked.count,
         "seconds": round(time.perf_counter() - began, 1),
         "diagnoses": {case: json.loads((asked.save / "arms" / f"{case}.json").read_text("utf-8")) for case in there},
         "not_made": [case for case in CASES if case not in there],
         "cases": {case: verdict_of(found) for case, found in values.items()},
     }
-    write_whole(asked.save / "sim_to_rig.json", json.dumps(result, indent=1, ensure_ascii=False) + "\n")
-    write_whole(asked.save / "sim_to_rig.md", report_of(result))
-    print(f"\n{asked.save / 'sim_to_rig.md'}: {result['seconds']} s")
+    place = write_results(asked.save, "sim_to_rig", result, report_of(result))
+    print(f"\n{place}: {result['seconds']} s")
     return 0
 
 

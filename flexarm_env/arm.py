@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from flexarm_env.arm_file import arm_from_table, read_arm, write_arm
+from flexarm_env.arm_file import arm_from_table, read_arm
+from flexarm_env.arm_text import write_arm
 from flexarm_env.control.law import ControlLaw
 from flexarm_env.display import Shown
 from flexarm_env.effects import Catalogue, Effect, catalogue
-from flexarm_env.effects.catalogue import LAW_PORTS
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.parameters import INPUTS, NEEDS, SECTIONS, Parameter, check_bounds, reading_noise
 from flexarm_env.sensors import Sensor, known_sensors
@@ -324,18 +324,9 @@ class Arm(Shown):
 
     def structure(self) -> Structure:
         """Build the linear part of the arm, with all linear effects applied."""
-        from flexarm_env.machine import structure_of_constants
+        from flexarm_env.machine import structure_of
 
-        structure = structure_of_constants(self.constants, self.input)
-        structure.sensors |= {
-            signal: self.sensor(signal).channel(s["gain"], s["offset"], s["filter"], s["position"])
-            for signal, s in self.sensors.items()
-        }
-        for name, values in self.present():
-            port = self.known[name].port("structure")
-            if port is not None:
-                port(structure, **values)
-        return structure
+        return structure_of(self.constants, self.input, self.sensors, self.present(), self.known)
 
     def present(self) -> list[tuple[str, Values]]:
         """Effects with a value other than null, by name, with their values."""
@@ -343,38 +334,9 @@ class Arm(Shown):
 
     def laws(self) -> list[ActiveLaw]:
         """List the nonlinear laws of all effects that are present, with their parameters."""
-        from flexarm_env.plant.active_laws import VARYING_PORTS, ActiveLaw
+        from flexarm_env.machine import laws_of
 
-        active = self._gravity()
-        yields = any(self.known[name].port("presliding") for name, _ in self.present())
-        for name, values in self.present():
-            effect = self.known[name]
-            for port in LAW_PORTS:
-                if effect.port(port) is not None:
-                    varies = effect.varies if port == "friction" else port in VARYING_PORTS
-                    parameters = tuple(values[key] for key in effect.parameters)
-                    share = 0.0 if yields else self._motor_share(effect)
-                    active.append(ActiveLaw(self.known.kinds[name, port], port, parameters, varies, share, self._read_by(effect)))
-        return active
-
-    def _motor_share(self, effect: type[Effect]) -> float:
-        """Part of an effect's friction on the motor; the hub in front of an elastic joint turns with it."""
-        if effect.motor_share:
-            return self.constants["drive"][effect.motor_share]
-        return 1.0 if "joint" in self.constants else 0.0
-
-    def _gravity(self) -> list[ActiveLaw]:
-        """List the law of the weight of link or beam: that of a tilted base, with the torque that the constants give."""
-        from flexarm_env.machine import weight
-        from flexarm_env.plant.active_laws import ActiveLaw
-
-        torque, uphill = weight(self.constants)
-        return [ActiveLaw(self.known.kinds["base_tilt", "weight"], "weight", (torque, uphill), varies=True)] if torque else []
-
-    def _read_by(self, effect: type[Effect]) -> tuple[str, ...]:
-        """Names of the arm's signals on which an effect's sensor law acts."""
-        gages = "strain" in effect.reads
-        return tuple(s for s in self.sensors if s in effect.reads or (gages and self.sensor(s).strain))
+        return laws_of(self.constants, self.signals, self.present(), self.known)
 
     def plant(self, interval: float) -> Plant:
         """Compile the arm for simulation.

@@ -1,4 +1,4 @@
-"""Arm files: reading and writing of TOML with units. An arm file never runs code."""
+"""Arm files: reading of TOML with units. An arm file never runs code."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from flexarm_env.control.table import law_from_table, law_table
+from flexarm_env.control.table import law_from_table
 from flexarm_env.effects import Catalogue
 from flexarm_env.errors import InputError, did_you_mean
-from flexarm_env.files import read_toml, write_whole
+from flexarm_env.files import read_toml
 from flexarm_env.parameters import DEFAULTS, INPUTS, LEVEL, NEEDS, SECTIONS, Parameter, check_bounds, defaults_of
 from flexarm_env.recordings.checks import check_conditions
 from flexarm_env.recordings.conditions import CONDITIONS
@@ -305,79 +305,3 @@ def _check_controller(arm: Arm) -> None:
     for signal in arm.controller.signals if arm.controller else ():
         if signal not in arm.sensors:
             raise InputError(f"controller.{signal} feeds back a signal that the arm does not measure: add [sensors.{signal}]")
-
-
-def write_arm(arm: Arm, path: Path) -> None:
-    """Write an arm file, completely or not at all.
-
-    Raises:
-        InputError: if the file cannot be written.
-    """
-    write_whole(path, arm_text(arm))
-
-
-def arm_text(arm: Arm) -> str:
-    """Format an arm as TOML, in SI units with the unit beside each value. Defaults are left out.
-
-    Example:
-        >>> from flexarm_env import Arm
-        >>> text = arm_text(Arm.load("thesis").with_effect("backlash", gap=0.06))
-        >>> text.splitlines()[-2:]
-        ['[effects.backlash]', 'gap = "0.06 rad"']
-    """
-    import tomlkit
-
-    document = tomlkit.document()
-    document["name"] = arm.name
-    if arm.description:
-        document["description"] = arm.description
-    if arm.fixed:
-        document["fixed"] = list(arm.fixed)
-    for section, values in arm.constants.items():
-        table = tomlkit.table()
-        if section == "drive":
-            table["input"] = arm.input
-        defaults = defaults_of(section, arm.input, arm.constants)
-        for key, value in values.items():
-            if defaults.get(key) != value:
-                _put(table, key, value, SECTIONS[section][key].unit)
-        document[section] = table
-    sensors = tomlkit.table(is_super_table=True)
-    for signal, values in arm.sensors.items():
-        table = tomlkit.table()
-        for key, value in values.items():
-            setting = arm.parameter(f"sensors.{signal}.{key}")
-            if key == "noise" and signal in arm.auto_noise:
-                table[key] = AUTO
-            elif setting.typical != value:
-                _put(table, key, value, setting.unit)
-        sensors[signal] = table
-    document["sensors"] = sensors
-    effects = tomlkit.table(is_super_table=True)
-    for name, values in arm.effects.items():
-        table = tomlkit.table()
-        for key, value in values.items():
-            _put(table, key, value, arm.known[name].parameters[key].unit)
-        effects[name] = table
-    if arm.effects:
-        document["effects"] = effects
-    controller = law_table(arm.controller, arm.input) if arm.controller else None
-    for key, extra in (
-        ("columns", arm.columns),
-        ("conditions", dict(arm.conditions)),
-        ("controller", controller),
-        ("fitted", arm.fitted),
-        ("origin", arm.origin),
-    ):
-        if extra:
-            document[key] = extra
-    return tomlkit.dumps(document)
-
-
-def _put(table: Any, key: str, value: float, unit: str) -> None:
-    if key == "elements":
-        table[key] = int(value)
-    elif unit and math.isfinite(value):
-        table[key] = f"{float(value)!r} {unit}"
-    else:
-        table[key] = float(value)

@@ -9,9 +9,10 @@ import numpy as np
 from scipy.linalg import expm
 
 from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.plant.assembly import assemble
 from flexarm_env.plant.beam import Matrix
 from flexarm_env.plant.modal import HUB_STUCK, MOTOR_STUCK, mode_of
-from flexarm_env.plant.structure import COMMAND, HELD_HUB, HELD_MOTOR, HUB_TORQUE, ONE, assemble
+from flexarm_env.plant.structure import COMMAND, HELD_HUB, HELD_MOTOR, HUB_TORQUE, ONE
 
 if TYPE_CHECKING:
     from flexarm_env.arm import Arm

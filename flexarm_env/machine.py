@@ -1,16 +1,88 @@
-"""The linear part and the weight of an arm from its base constants."""
+"""The linear part, the laws and the weight of an arm, from its constants, sensors and effects."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
+from flexarm_env.effects import Catalogue, Effect
+from flexarm_env.effects.catalogue import LAW_PORTS
+from flexarm_env.plant.active_laws import VARYING_PORTS, ActiveLaw
 from flexarm_env.plant.structure import Structure
+from flexarm_env.sensors import known_sensors
 
 #: Standard gravity [m/s²].
 GRAVITY = 9.80665
 
-Constants = Mapping[str, Mapping[str, float]]
+Values = Mapping[str, float]
+Constants = Mapping[str, Values]
+#: Effects that are present, with their values.
+Present = Sequence[tuple[str, Values]]
+
+
+def structure_of(
+    constants: Constants, command: str, sensors: Mapping[str, Values], present: Present, known: Catalogue
+) -> Structure:
+    """Build the linear part of an arm, with sensors and all linear effects applied.
+
+    Args:
+        constants: base constants by section and key.
+        command: kind of the drive's command.
+        sensors: settings of each measured signal.
+        present: effects with their values.
+        known: catalogue of effects.
+    """
+    structure = structure_of_constants(constants, command)
+    structure.sensors |= {
+        signal: known_sensors()[signal].channel(s["gain"], s["offset"], s["filter"], s["position"])
+        for signal, s in sensors.items()
+    }
+    for name, values in present:
+        port = known[name].port("structure")
+        if port is not None:
+            port(structure, **values)
+    return structure
+
+
+def laws_of(constants: Constants, signals: Sequence[str], present: Present, known: Catalogue) -> list[ActiveLaw]:
+    """List the nonlinear laws of an arm's weight and of its effects, with their parameters.
+
+    Args:
+        constants: base constants by section and key.
+        signals: those that are measured.
+        present: effects with their values.
+        known: catalogue of effects.
+    """
+    active = _gravity(constants, known)
+    yields = any(known[name].port("presliding") for name, _ in present)
+    for name, values in present:
+        effect = known[name]
+        for port in LAW_PORTS:
+            if effect.port(port) is not None:
+                varies = effect.varies if port == "friction" else port in VARYING_PORTS
+                parameters = tuple(values[key] for key in effect.parameters)
+                share = 0.0 if yields else _motor_share(constants, effect)
+                active.append(ActiveLaw(known.kinds[name, port], port, parameters, varies, share, _read_by(signals, effect)))
+    return active
+
+
+def _motor_share(constants: Constants, effect: type[Effect]) -> float:
+    """Part of an effect's friction on the motor; the hub in front of an elastic joint turns with it."""
+    if effect.motor_share:
+        return constants["drive"][effect.motor_share]
+    return 1.0 if "joint" in constants else 0.0
+
+
+def _gravity(constants: Constants, known: Catalogue) -> list[ActiveLaw]:
+    """List the law of the weight of link or beam: that of a tilted base, with the torque that the constants give."""
+    torque, uphill = weight(constants)
+    return [ActiveLaw(known.kinds["base_tilt", "weight"], "weight", (torque, uphill), varies=True)] if torque else []
+
+
+def _read_by(signals: Sequence[str], effect: type[Effect]) -> tuple[str, ...]:
+    """Names of the measured signals on which an effect's sensor law acts."""
+    gages = "strain" in effect.reads
+    return tuple(s for s in signals if s in effect.reads or (gages and known_sensors()[s].strain))
 
 
 def structure_of_constants(constants: Constants, command: str) -> Structure:

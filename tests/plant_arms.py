@@ -100,6 +100,15 @@ def energy(plant, state):
     return 0.5 * (speed @ plant.model.mass @ speed + place @ plant.model.stiffness @ place)
 
 
+def energy_with_gears(plant, structure):
+    """Kinetic and elastic energy [J] of a plant, that of its gears with it."""
+    size = len(plant.model.names)
+    windup = np.array([{"hub": -1.0, "motor": 1.0}.get(name, 0.0) for name in plant.model.names])
+    gears = structure.gear_stiffness * np.outer(windup, windup) if structure.separate_motor else 0.0
+    place, speed = np.split(plant.physical()[: 2 * size], 2)
+    return 0.5 * (speed @ plant.model.mass @ speed + place @ (plant.model.stiffness + gears) @ place)
+
+
 def relative(found, wanted):
     return np.max(np.abs(found - wanted)) / np.max(np.abs(wanted))
 

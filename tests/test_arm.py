@@ -12,7 +12,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.effects import catalogue
 from flexarm_env.errors import InputError
 
-MODULES = ("arm", "arm_file", "linear", "parameters", "units", "sensors.base")
+MODULES = ("arm", "arm_file", "arm_text", "linear", "parameters", "units", "sensors.base")
 
 
 @pytest.mark.parametrize("name", MODULES)

@@ -13,7 +13,8 @@ from gymnasium.error import ClosedEnvironmentError, DependencyNotInstalled
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
-from flexarm_env.plant.structure import Structure, assemble
+from flexarm_env.plant.assembly import assemble
+from flexarm_env.plant.structure import Structure
 from flexarm_env.render import Renderer, Scene, beam_shape
 from flexarm_env.render.canvas import number
 from flexarm_env.render.style import BEAM, GAGE, HUB_AT, INK, PANEL, REACH, SIZE, STUCK, TABLE, TARGET

@@ -21,7 +21,7 @@ from agents.learning.models import TRAINING_ONLY, bare_policy
 from agents.learning.options import Plan
 from agents.learning.plan_file import read_table
 from flexarm_env.arm import Arm
-from flexarm_env.arm_file import arm_text
+from flexarm_env.arm_text import arm_text
 from flexarm_env.errors import InputError
 from flexarm_env.files import write_whole
 from flexarm_env.wrappers import PolicyInterface

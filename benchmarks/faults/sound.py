@@ -7,7 +7,6 @@ from pathlib import Path
 
 import flexarm_env.demo
 from benchmarks.hidden_effects.cases import sample
-from benchmarks.hidden_effects.machine import record
 from flexarm_env import Arm, Recording
 from flexarm_env.terminal.inputs import read_recordings
 
@@ -27,7 +26,7 @@ def hidden_effects(seed: int, count: int) -> Iterator[Case]:
     """Record cases of the benchmark of hidden effects, drawn at random."""
     arm = Arm.load(ARM)
     for case in sample(seed, count):
-        yield case.name, arm, record(case)
+        yield case.name, arm, case.recordings()
 
 
 def shipped() -> Iterator[Case]:

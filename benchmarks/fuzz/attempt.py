@@ -17,7 +17,7 @@ from typing import Any
 from benchmarks.fuzz.corpus import Sound, corpus
 from benchmarks.fuzz.mutate import mutate
 from flexarm_env import Arm, InputError, Recording, simulate
-from flexarm_env.arm_file import arm_text
+from flexarm_env.arm_text import arm_text
 from flexarm_env.recordings.column_maps import load_columns
 
 #: A file that takes longer [s], more memory [bytes, beyond the most that the process has had] or a longer line is a find,

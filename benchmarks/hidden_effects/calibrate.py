@@ -11,7 +11,6 @@ from joblib import Parallel, delayed
 
 from benchmarks.hidden_effects.cases import EXPERIMENTS, SIZES, STRENGTHS, Case, in_commands, sizes
 from benchmarks.hidden_effects.effects import CATALOGUE, OUTSIDE, Hidden
-from benchmarks.hidden_effects.machine import record
 from flexarm_env import Arm
 from flexarm_env.files import write_whole
 from flexarm_env.identify.calibrate.calibrator import Calibrator
@@ -30,7 +29,7 @@ def strength_at(hidden: Hidden, size: float) -> float:
     middle = {key: 0.5 * (low + high) if low > -1.0 else 0.3 * high for key, (low, high) in hidden.others.items()}
     settings = in_commands(hidden, {hidden.setting: size, **middle}, EXPERIMENTS[0], seed=1)
     case = Case("", "one", (), 0.0, settings, EXPERIMENTS[0], seed=1)
-    arm, data = prepare(Arm.load("thesis-fem"), record(case))
+    arm, data = prepare(Arm.load("thesis-fem"), case.recordings())
     found = Calibrator(arm, data).calibrate(arm)
     error = min(score(found.arm, data).windows, score(arm, data).windows)
     return math.sqrt(max(error**2 - 1.0, 0.0))

@@ -59,7 +59,11 @@ class Case:
 
     def pose(self) -> tuple[dict[str, Any], Arm, list[Recording]]:
         """Make the case: its plain data, the arm as given and the recordings."""
-        return self.as_json(), Arm.load(ARM), record(self)
+        return self.as_json(), Arm.load(ARM), self.recordings()
+
+    def recordings(self) -> list[Recording]:
+        """Simulate the recordings of the machine."""
+        return record(self.settings, self.runs, self.seed)
 
 
 @lru_cache

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from flexarm_env import Recording
 from tests.rig import SIGNALS, simulate
 
-if TYPE_CHECKING:
-    from benchmarks.hidden_effects.cases import Case
-
 #: A run of a case: the rig's experiment, the factor on the controller's gains, and a known payload [kg].
 Plan = tuple[str, float, float]
 
 
-def record(case: Case) -> list[Recording]:
-    """Simulate the recordings of a case, rounded as in a file."""
-    return [_recorded(case.settings, run, case.seed) for run in case.runs]
+def record(settings: Mapping[str, float], runs: Sequence[Plan], seed: int) -> list[Recording]:
+    """Simulate the recordings of a machine's runs, rounded as in a file."""
+    return [_recorded(settings, run, seed) for run in runs]
 
 
 def largest_command(settings: Mapping[str, float], runs: tuple[Plan, ...], seed: int) -> float:

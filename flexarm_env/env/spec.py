@@ -13,7 +13,7 @@ import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
 from flexarm_env.arm import Arm
-from flexarm_env.arm_file import arm_text
+from flexarm_env.arm_text import arm_text
 
 
 def plain_spec(spec: EnvSpec | None, steps: int) -> EnvSpec | None:

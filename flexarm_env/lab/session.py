@@ -9,7 +9,7 @@ from typing import Any
 
 import flexarm_env
 from flexarm_env.arm import Arm
-from flexarm_env.arm_file import arm_text
+from flexarm_env.arm_text import arm_text
 from flexarm_env.errors import InputError
 from flexarm_env.identify.inspect.inspection import Inspection, inspect_recordings
 from flexarm_env.identify.inspect.overview import overview

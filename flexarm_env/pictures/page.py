@@ -175,17 +175,7 @@ def _constants(diagnosis: Diagnosis) -> str:
 
 def estimates(found: Sequence[Estimate]) -> str:
     """Format a table of fitted values with intervals, beside the values as given."""
-    rows = [
-        [
-            words.constant_name(e),
-            words.rounded(e.nominal, e.low, e.high),
-            words.rounded(e.value, e.low, e.high),
-            words.interval(e),
-            words.plain_unit(e.unit),
-        ]
-        for e in found
-    ]
-    return table(["value", "before", "after", "90 % interval", "unit"], rows)
+    return table(words.ESTIMATES, words.estimate_rows(found))
 
 
 def _smallest(diagnosis: Diagnosis) -> str:

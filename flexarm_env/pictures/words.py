@@ -19,6 +19,7 @@ NOTHING = "–"
 _BARS = "▁▂▃▄▅▆▇█"
 _EIGHTHS = " ▏▎▍▌▋▊▉"
 FAULT_COLUMNS = ("recording", "fault", "size", "samples", "finding", "line that mends it")
+ESTIMATES = ("value", "before", "after", "90 % interval", "unit")
 PARTS = ("moving fast", "moving slowly", "stuck")
 
 
@@ -69,6 +70,20 @@ def parameters_of(estimates: Iterable[Estimate]) -> str:
 def constant_name(estimate: Estimate) -> str:
     """Shorten the path of a fitted value to its name."""
     return short_name(estimate.path)
+
+
+def estimate_rows(found: Sequence[Estimate]) -> list[list[str]]:
+    """Format fitted values with their intervals, beside the values as given: rows under `ESTIMATES`."""
+    return [
+        [
+            constant_name(e),
+            rounded(e.nominal, e.low, e.high),
+            rounded(e.value, e.low, e.high),
+            interval(e),
+            plain_unit(e.unit),
+        ]
+        for e in found
+    ]
 
 
 def counted(count: int, noun: str) -> str:

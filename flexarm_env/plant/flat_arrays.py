@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.active_laws import LAW_LISTS, ActiveLaw, law_lists
+from flexarm_env.plant.assembly import assemble
 from flexarm_env.plant.beam import Matrix, spread_out, turned
 from flexarm_env.plant.blocks import blocks_of
 from flexarm_env.plant.event_free_table import DEPTH, table_size
@@ -24,7 +25,6 @@ from flexarm_env.plant.structure import (
     Key,
     LinearModel,
     Structure,
-    assemble,
     exceeds,
     is_stacked,
     structure_of,

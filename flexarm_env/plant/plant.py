@@ -9,10 +9,11 @@ import numpy as np
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.active_laws import ActiveLaw
+from flexarm_env.plant.assembly import assemble
 from flexarm_env.plant.beam import Matrix
 from flexarm_env.plant.compose import Law, compose
 from flexarm_env.plant.flat_arrays import RESPONSE, pack
-from flexarm_env.plant.structure import Structure, assemble, stacked
+from flexarm_env.plant.structure import Structure, stacked
 
 NO_GAINS = np.zeros((0, 0, 0))
 NO_INTERVALS = np.zeros(0)

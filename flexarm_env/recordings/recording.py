@@ -17,19 +17,19 @@ from flexarm_env.display import Shown
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import write_whole
 from flexarm_env.parameters import INPUTS
-from flexarm_env.recordings.checks import as_vector, check_conditions, check_time, check_values, with_held_command
+from flexarm_env.recordings.checks import as_vector, check_conditions
 from flexarm_env.recordings.clock import RestartError
 from flexarm_env.recordings.column_maps import load_columns
-from flexarm_env.recordings.columns import UNITS, ColumnMap, Source, check_calibration, check_names
-from flexarm_env.recordings.conditions import CONDITIONS
-from flexarm_env.recordings.corrections import corrected
+from flexarm_env.recordings.columns import ColumnMap, Source, check_calibration
+from flexarm_env.recordings.csv_text import csv_text
 from flexarm_env.recordings.episodes import check_episodes, episodes_of
 from flexarm_env.recordings.files import PathLike, read_bytes
 from flexarm_env.recordings.formats.catalogue import format_of
 from flexarm_env.recordings.formats.lerobot import with_info
 from flexarm_env.recordings.joined import read_joined, recording_files, run_name
 from flexarm_env.recordings.messages import file_error
-from flexarm_env.recordings.sidecar import read_conditions, sidecar_of
+from flexarm_env.recordings.samples import samples_of
+from flexarm_env.recordings.sidecar import conditions_beside
 from flexarm_env.sensors import known_sensors
 
 Floats = NDArray[np.float64]
@@ -235,8 +235,7 @@ class Recording(Shown):
         except InputError as error:
             raise file_error(path, error) from None
         controller = None if layout is None else layout.controller
-        complete = [_with_sidecar(one, path) for one in recordings]
-        return [replace(one, controller=controller, source=str(path), sha256=checksum) for one in complete]
+        return [replace(_with_sidecar(one, path), controller=controller, source=str(path), sha256=checksum) for one in recordings]
 
     @classmethod
     def read_all(
@@ -291,10 +290,7 @@ class Recording(Shown):
         columns |= {name: self.signals[name] for name in known_sensors() if name in self.signals}
         if self.reference is not None:
             columns["reference"] = self.reference
-        remarks = [f"# {name} = {value!r} {CONDITIONS.get(name, '')}".rstrip() for name, value in self.conditions.items()]
-        header = ",".join(f"{name} [{UNITS[name]}]" for name in columns)
-        rows = zip(*map(_cells, columns.values()), strict=True)
-        write_whole(Path(path), "\n".join([*remarks, header, *map(",".join, rows), ""]))
+        write_whole(Path(path), csv_text(columns, self.conditions))
 
     def part(self, start: float = 0.0, stop: float | None = None) -> Recording:
         """Cut out the samples with start <= time < stop [s]; without `stop`, up to the end.
@@ -340,7 +336,7 @@ def _recording(
     lines: Sequence[int] = (),
     sources: Mapping[str, Source] | None = None,
 ) -> Recording:
-    """Check (n,) arrays in SI, by column name, correct signals, and make a recording of them.
+    """Make a recording of (n,) arrays in SI, by column name, checked and corrected.
 
     Args:
         name: for tables and plots.
@@ -349,58 +345,30 @@ def _recording(
         lines: the line of each sample in its file, for messages; empty where there is none.
         sources: the columns in a file, with their corrections; None for arrays from elsewhere.
     """
-    kind = check_names(tuple(arrays))
-    lengths = {column: len(values) for column, values in arrays.items()}
-    if len(set(lengths.values())) > 1:
-        raise InputError(f"lengths differ ({lengths}); give arrays of one length")
-    if lengths["time"] < 2:
-        raise InputError(f"has {lengths['time']} samples; it needs at least two")
-    with np.errstate(over="ignore", invalid="ignore"):
-        arrays["time"] = arrays["time"] - arrays["time"][0]
-    check_time(arrays["time"], lines)
-    corrections = {column: source.corrections for column, source in (sources or {}).items()}
-    arrays, notes = corrected(arrays, corrections)
-    if sources is not None:
-        arrays[kind], note = with_held_command(arrays[kind], kind, lines)
-        notes = (*notes, note) if note else notes
-    check_values(arrays, lines)
+    samples = samples_of(arrays, lines, sources)
     check_conditions(conditions)
     return Recording(
         name=name,
-        time=arrays["time"],
-        input_kind=kind,
-        command=arrays[kind],
-        signals={signal: arrays[signal] for signal in known_sensors() if signal in arrays},
-        reference=arrays.get("reference"),
+        time=samples.columns["time"],
+        input_kind=samples.input_kind,
+        command=samples.columns[samples.input_kind],
+        signals={signal: samples.columns[signal] for signal in known_sensors() if signal in samples.columns},
+        reference=samples.columns.get("reference"),
         conditions=conditions,
-        notes=notes,
+        notes=samples.notes,
     )
 
 
 def _with_sidecar(recording: Recording, path: Path) -> Recording:
-    """Add the conditions in the file beside a recording, with a note that names it."""
-    beside = sidecar_of(path)
-    if beside is None:
-        return recording
-    stated = read_conditions(beside)
-    twice = [name for name in stated if name in recording.conditions]
-    if twice:
-        raise file_error(path, f"condition '{twice[0]}' comes twice, in the file and in {beside.name}; keep one of the two")
-    if not stated:
-        return recording
-    note = f"{beside.name} states {', '.join(f'{name} = {value:g}' for name, value in stated.items())}"
-    return replace(recording, conditions=recording.conditions | stated, notes=(*recording.notes, note))
+    """Add the conditions in the file beside a recording."""
+    stated, notes = conditions_beside(path, recording.conditions)
+    return replace(recording, conditions=recording.conditions | stated, notes=(*recording.notes, *notes))
 
 
 def _share_measured(values: Floats) -> str:
     """Format the share of rows in which a signal was measured; "" for all of them."""
     share = 1.0 - float(np.isnan(values).mean())
     return f" ({100.0 * share:.3g} % measured)" if share < 1.0 else ""
-
-
-def _cells(values: Floats) -> list[str]:
-    """Write numbers with all their digits, and an empty cell for NaN."""
-    return ["" if value != value else repr(value) for value in values.tolist()]
 
 
 def _check_signal(recording: Recording, required: bool, place: str = "") -> None:

@@ -18,6 +18,28 @@ TABLE = "conditions"
 _OTHERS = ("drive", "columns", "hub", "sensors")
 
 
+def conditions_beside(path: Path, given: Mapping[str, float]) -> tuple[dict[str, float], tuple[str, ...]]:
+    """Read the conditions in the file beside a recording, and notes that name it; none where there is none.
+
+    Args:
+        path: of the recording.
+        given: conditions that its own file states.
+
+    Raises:
+        InputError: for a faulty file beside it, and for a condition that both state.
+    """
+    beside = sidecar_of(path)
+    if beside is None:
+        return {}, ()
+    stated = read_conditions(beside)
+    twice = [name for name in stated if name in given]
+    if twice:
+        raise file_error(path, f"condition '{twice[0]}' comes twice, in the file and in {beside.name}; keep one of the two")
+    if not stated:
+        return {}, ()
+    return stated, (f"{beside.name} states {', '.join(f'{name} = {value:g}' for name, value in stated.items())}",)
+
+
 def sidecar_of(path: Path) -> Path | None:
     """Find the file of conditions beside a recording; None where there is none.
 

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexarm_env.plant.assembly import assemble
 from flexarm_env.plant.beam import Beam, Matrix
-from flexarm_env.plant.structure import Structure, assemble
+from flexarm_env.plant.structure import Structure
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from flexarm_env.arm import Arm
-from flexarm_env.arm_file import arm_text
+from flexarm_env.arm_text import arm_text
 from flexarm_env.identify.diagnose import diagnose
 from flexarm_env.identify.progress import ProgressCallback
 from flexarm_env.identify.results import Diagnosis

@@ -13,7 +13,7 @@ from flexarm_env.errors import InputError
 from flexarm_env.experiments.stated import stated_by, with_stated
 from flexarm_env.identify.explain.hub_torque import acts_on_hub, arguments, law_torque
 from flexarm_env.machine import weight
-from flexarm_env.plant.structure import assemble
+from flexarm_env.plant.assembly import assemble
 from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]

@@ -149,17 +149,7 @@ def _closed(errors: Mapping[str, float], effects: Sequence[str] = ()) -> list[tu
 
 def estimates(title: str, found: Sequence[Estimate]) -> list[RenderableType]:
     """Make the table of fitted values with their intervals and their values before."""
-    rows = [
-        [
-            words.constant_name(e),
-            words.rounded(e.nominal, e.low, e.high),
-            words.rounded(e.value, e.low, e.high),
-            words.interval(e),
-            words.plain_unit(e.unit),
-        ]
-        for e in found
-    ]
-    return [table(title, ["value", "before", "after", "90 % interval", "unit"], rows)] if rows else []
+    return [table(title, words.ESTIMATES, words.estimate_rows(found))] if found else []
 
 
 def diagnosis(result: Diagnosis) -> list[RenderableType]:

@@ -10,7 +10,7 @@ from typing import Any
 
 from flexarm_env import __version__
 from flexarm_env.arm import Arm
-from flexarm_env.arm_file import arm_text
+from flexarm_env.arm_text import arm_text
 from flexarm_env.controllers import CONTROLLERS, Controller, tuned_recipe
 from flexarm_env.controllers.tuned import TunedController, on_drive
 from flexarm_env.errors import InputError

@@ -11,7 +11,6 @@ import flexarm_env
 from benchmarks.hidden_effects import table, truth
 from benchmarks.hidden_effects.baselines import best_fit_wins, stepwise
 from benchmarks.hidden_effects.cases import CATALOGUE, cases, sample
-from benchmarks.hidden_effects.machine import record
 from benchmarks.hidden_effects.run import run
 from benchmarks.hidden_effects.score import confusions, figures
 from benchmarks.hidden_effects.sindy import sparse_effects
@@ -64,7 +63,7 @@ def test_a_sample_is_of_all_kinds_and_part_of_a_larger_one():
 
 def test_a_saturation_is_below_the_largest_command():
     case = next(c for c in cases(1) if c.effects == ("saturation",))
-    commands = [np.abs(run.command).max() for run in record(case)]
+    commands = [np.abs(run.command).max() for run in case.recordings()]
     assert max(commands) > case.settings["sat"]
 
 
@@ -76,9 +75,9 @@ def test_every_effect_is_in_the_catalogue():
 
 def test_a_machine_is_recorded_with_what_is_known_of_it():
     case = next(c for c in cases(1) if ("square", 1.0, 0.15) in c.runs and c.kind == "null")
-    runs = record(case)
+    runs = case.recordings()
     assert [r.conditions.get("payload", 0.0) for r in runs] == [0.0, 0.15, 0.0]
-    again = record(case)
+    again = case.recordings()
     assert all(np.array_equal(a.signals["arm_angle"], b.signals["arm_angle"]) for a, b in zip(runs, again, strict=True))
 
 

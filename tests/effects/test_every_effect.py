@@ -18,6 +18,7 @@ import numba
 import numpy as np
 import pytest
 from one_joint import servo
+from plant_arms import energy_with_gears
 
 from flexarm_env.arm import Arm
 from flexarm_env.effects import Effect, catalogue
@@ -191,18 +192,10 @@ def test_friction_dissipates(arm, name):
     structure, plant = alone.structure(), alone.plant(0.005)
     plant.place()
     plant.replay(np.full(60, 3.0))
-    size = len(plant.model.names)
-    windup = np.array([{"hub": -1.0, "motor": 1.0}.get(q, 0.0) for q in plant.model.names])
-    gears = structure.gear_stiffness * np.outer(windup, windup) if structure.separate_motor else 0.0
-
-    def energy() -> float:
-        q, rate = np.split(plant.physical()[: 2 * size], 2)
-        return 0.5 * (rate @ plant.model.mass @ rate + q @ (plant.model.stiffness + gears) @ q)
-
-    levels = [energy()]
+    levels = [energy_with_gears(plant, structure)]
     for _ in range(600):
         plant.replay(np.zeros(2))
-        levels.append(energy())
+        levels.append(energy_with_gears(plant, structure))
     assert levels[0] > 0.01
     assert np.diff(levels).max() <= 1e-9 * levels[0]
 

@@ -11,7 +11,6 @@ import rig
 from emps_recipe import published, relative_error
 
 from benchmarks.hidden_effects.cases import cases
-from benchmarks.hidden_effects.machine import record
 from flexarm_env import Arm, InputError, Recording, add, compare, diagnose, fit
 
 #: Name in truth.json, and as a parameter of the effect.
@@ -120,7 +119,7 @@ def test_effects_that_differ_only_at_rest_are_told_apart(setting, effect):
 def test_constants_that_made_up_for_an_effect_do_not_hide_it(case):
     """Cases of the benchmark in which the refit bends the constants most: what is tried from there fails."""
     (hidden,) = [c for c in cases(5) if c.name == case]
-    found = diagnose(Arm.load("thesis-fem"), record(hidden))
+    found = diagnose(Arm.load("thesis-fem"), hidden.recordings())
     assert found.effects == list(hidden.effects)
     assert found.error["final"] < 1.05
     assert found.free_run["final"] < 1.1

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import pytest
+from searches import limited, seen_by
 
-from flexarm_env import Arm, simulate
+from flexarm_env import Arm
 from flexarm_env.identify.calibrate.parameters import free_parameters
-from flexarm_env.identify.replay.dataset import Dataset, prepare
+from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.density import first_disturbances, likeliest
 from flexarm_env.identify.select.promise import Promise, promises
 from flexarm_env.identify.select.starts import candidates
 from flexarm_env.identify.settings import SETTINGS
-
-
-def seen_by(machine: Arm, model: Arm) -> tuple[Arm, Dataset]:
-    recordings = [simulate(machine, kind, duration=4.0, rate=200.0, seed=3) for kind in ("square", "pulse")]
-    return prepare(model, recordings)
 
 
 def weighed(nominal: Arm, data: Dataset, names: list[str]) -> list[Promise]:
@@ -78,13 +74,7 @@ def test_a_small_steady_torque_is_seen_though_observers_hide_it(arm):
 @pytest.mark.parametrize("size", [1.0, 24.0])
 def test_a_limit_below_the_largest_command_is_seen_whatever_the_commands_size(arm, share, size):
     """The same machine, with an amplifier that is commanded in units so many times smaller."""
-    drive = arm.constants["drive"]
-    values = {"drive.torque_constant": drive["torque_constant"] / size, "drive.limit": drive["limit"] * size}
-    model = arm.with_values(values)
-    largest = max(
-        float(abs(simulate(model, kind, duration=4.0, rate=200.0, seed=3).command).max()) for kind in ("square", "pulse")
-    )
-    machine = model.with_effect("saturation", limit=share * largest)
+    machine, model = limited(arm, share, size)
     nominal, data = seen_by(machine, model)
     before, true = (likeliest(a, data, first_disturbances(a, data)).cost for a in (nominal, machine))
     (found,) = weighed(nominal, data, ["saturation"])

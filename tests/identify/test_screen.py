@@ -6,11 +6,11 @@ from dataclasses import replace
 from typing import ClassVar
 
 import pytest
+from searches import limited, seen_by
 
-from flexarm_env import Arm, simulate
+from flexarm_env import Arm
 from flexarm_env.effects import Effect
 from flexarm_env.identify.calibrate.calibrator import Calibrator
-from flexarm_env.identify.replay.dataset import Dataset, prepare
 from flexarm_env.identify.replay.scales import torque_scale
 from flexarm_env.identify.select.signatures import Baseline, baseline, baselines, signatures
 from flexarm_env.identify.select.starts import first_start, sized
@@ -18,11 +18,6 @@ from flexarm_env.identify.settings import SETTINGS
 from flexarm_env.parameters import Parameter
 
 LEVELS = SETTINGS.process_noise.screening
-
-
-def seen_by(machine: Arm, model: Arm) -> tuple[Arm, Dataset]:
-    recordings = [simulate(machine, kind, duration=4.0, rate=200.0, seed=3) for kind in ("square", "pulse")]
-    return prepare(model, recordings)
 
 
 @pytest.fixture(scope="module")
@@ -73,13 +68,7 @@ def test_errors_weigh_the_same_from_every_start(arm):
 @pytest.mark.parametrize("size", [1.0, 24.0])
 def test_a_limit_below_the_largest_command_is_seen_whatever_the_commands_size(arm, share, size):
     """The same machine, with an amplifier that is commanded in units so many times smaller."""
-    drive = arm.constants["drive"]
-    values = {"drive.torque_constant": drive["torque_constant"] / size, "drive.limit": drive["limit"] * size}
-    model = arm.with_values(values)
-    largest = max(
-        float(abs(simulate(model, kind, duration=4.0, rate=200.0, seed=3).command).max()) for kind in ("square", "pulse")
-    )
-    machine = model.with_effect("saturation", limit=share * largest)
+    machine, model = limited(arm, share, size)
     nominal, data = seen_by(machine, model)
     base = baseline(Calibrator(nominal, data).uncalibrated(nominal), data)
     before, left = (base.unexplained(r) for r in (base.residual, base.objective.residual_of(machine)))

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from plant_arms import energy_with_gears
 
 from flexarm_env import Arm, Recording, simulate
 from flexarm_env.plant.plant import NO_GAINS, NO_INTERVALS, NOT_MEASURED, Plant
@@ -80,18 +81,10 @@ def test_an_arm_left_alone_gains_no_energy(drawn):
     arm, command = drawn
     plant, structure = placed(arm), arm.structure()
     plant.replay(command)
-    size = len(plant.model.names)
-    windup = np.array([{"hub": -1.0, "motor": 1.0}.get(q, 0.0) for q in plant.model.names])
-    gears = structure.gear_stiffness * np.outer(windup, windup) if structure.separate_motor else 0.0
-
-    def energy() -> float:
-        q, rate = np.split(plant.physical()[: 2 * size], 2)
-        return 0.5 * (rate @ plant.model.mass @ rate + q @ (plant.model.stiffness + gears) @ q)
-
     levels = []
     for _ in range(100):
         plant.replay(np.zeros(2))
-        levels.append(energy())
+        levels.append(energy_with_gears(plant, structure))
     assert np.diff(levels).max() <= 1e-9 * levels[0] + 1e-15
 
 

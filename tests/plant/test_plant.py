@@ -8,7 +8,7 @@ from plant_arms import FRICTION, STATIC, TORQUE_PER_AMP, energy, law, noise, pul
 from reference import ReferenceArm, pulse_current, white_noise_current
 
 from flexarm_env import Arm
-from flexarm_env.plant import flat_arrays, structure
+from flexarm_env.plant import assembly, flat_arrays
 from flexarm_env.plant import layout as at
 
 
@@ -172,7 +172,7 @@ def test_a_plant_does_not_depend_on_those_before_it(name: str) -> None:
     ]
     alone = []
     for one in arms:
-        for cache in (structure._assemble_one, flat_arrays._linear_numbers_of_one, flat_arrays._decomposed_one):
+        for cache in (assembly._assemble_one, flat_arrays._linear_numbers_of_one, flat_arrays._decomposed_one):
             cache.cache_clear()
         alone.append(one.plant(0.002))
     for fresh, one in zip(alone, arms, strict=True):

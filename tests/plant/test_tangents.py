@@ -11,10 +11,11 @@ from plant_arms import COULOMB, SIGNALS, STATIC, noise
 from flexarm_env.effects import catalogue
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.active_laws import ActiveLaw
+from flexarm_env.plant.assembly import assemble
 from flexarm_env.plant.blocks import blocks_of
 from flexarm_env.plant.flat_arrays import pack
 from flexarm_env.plant.plant import Plant
-from flexarm_env.plant.structure import Structure, assemble
+from flexarm_env.plant.structure import Structure
 from flexarm_env.plant.tangents.constants import PLACES, Neighbours, constant_tangents
 from flexarm_env.plant.tangents.tangents import Tangents
 from flexarm_env.sensors.arm_angle import ArmAngle

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from flexarm_env.arm import Arm
 from flexarm_env.controllers import make_controller
-from flexarm_env.plant.structure import assemble
+from flexarm_env.plant.assembly import assemble
 from flexarm_env.thesis import appendix, arms, chapter3, printed, suppression
 from flexarm_env.thesis.constants import EXPERIMENT_1, EXPERIMENT_2, EXPERIMENT_3, TABLE
 from flexarm_env.thesis.fixed_step import STIFFNESS, pinned

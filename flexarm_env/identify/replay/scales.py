@@ -9,7 +9,7 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.settings import LEAST_COMMAND, ReferenceSizes
-from flexarm_env.plant.structure import assemble
+from flexarm_env.plant.assembly import assemble
 from flexarm_env.sensors import known_sensors
 
 

@@ -16,10 +16,11 @@ import numpy as np
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.active_laws import ActiveLaw
+from flexarm_env.plant.assembly import assemble
 from flexarm_env.plant.beam import Matrix
 from flexarm_env.plant.blocks import blocks_of
 from flexarm_env.plant.flat_arrays import pack
-from flexarm_env.plant.structure import SHORTEST_LAG, Structure, assemble, exceeds, stacked
+from flexarm_env.plant.structure import SHORTEST_LAG, Structure, exceeds, stacked
 
 #: Central differences of order four: places in steps, and weights. The numbers differenced are smooth functions of an arm.
 PLACES = np.array([-2.0, -1.0, 1.0, 2.0])
