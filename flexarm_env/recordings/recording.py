@@ -31,6 +31,7 @@ from flexarm_env.recordings.joined import read_joined, recording_files, run_name
 from flexarm_env.recordings.messages import file_error
 from flexarm_env.recordings.sidecar import read_conditions, sidecar_of
 from flexarm_env.sensors import known_sensors
+from flexarm_env.units import BaseValue
 
 Floats = NDArray[np.float64]
 Columns = PathLike | Mapping[str, Any] | ColumnMap
@@ -291,7 +292,7 @@ class Recording(Shown):
         columns |= {name: self.signals[name] for name in known_sensors() if name in self.signals}
         if self.reference is not None:
             columns["reference"] = self.reference
-        remarks = [f"# {name} = {value!r} {CONDITIONS.get(name, '')}".rstrip() for name, value in self.conditions.items()]
+        remarks = [f"# {name} = {value!r} {_unit(name, value)}".rstrip() for name, value in self.conditions.items()]
         header = ",".join(f"{name} [{UNITS[name]}]" for name in columns)
         rows = zip(*map(_cells, columns.values()), strict=True)
         write_whole(Path(path), "\n".join([*remarks, header, *map(",".join, rows), ""]))
@@ -390,6 +391,12 @@ def _with_sidecar(recording: Recording, path: Path) -> Recording:
         return recording
     note = f"{beside.name} states {', '.join(f'{name} = {value:g}' for name, value in stated.items())}"
     return replace(recording, conditions=recording.conditions | stated, notes=(*recording.notes, note))
+
+
+def _unit(name: str, value: float) -> str:
+    """Look up the unit of a condition, "" where none was stated."""
+    stated = value.unit if isinstance(value, BaseValue) else ""
+    return CONDITIONS.get(name, stated)
 
 
 def _share_measured(values: Floats) -> str:
