@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -85,3 +86,29 @@ def test_an_arm_says_what_it_has():
     assert [arm.has("motor") for arm in (servo(), pendulum())] == [True, False]
     assert [arm.can_have("current_lag") for arm in (servo(), pendulum())] == [False, True]
     assert [arm.has("windup") for arm in (servo(), elastic_joint(), Arm.load("emps"))] == [True, True, False]
+
+
+@pytest.mark.parametrize(
+    ("inertia", "hub", "words"),
+    [
+        (0.005, 0.0, r"link\.inertia = 0\.005 kg\*m\*\*2 is below mass times centre squared, 0\.02: .* axis; write 0\.025 if"),
+        (0.0, 1.0, r"link\.inertia = 0 kg\*m\*\*2 is below mass times centre squared, 0\.02"),
+    ],
+)
+def test_a_link_with_less_inertia_than_its_mass_as_a_point_is_refused(inertia, hub, words):
+    with pytest.raises(InputError, match=words) as refusal:
+        Arm.from_table(table(link=LINK | {"inertia": inertia}, hub={"inertia": hub}), "machine")
+    assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(("inertia", "hub"), [(0.5 * 0.2**2, 0.0), (0.02 - 1e-12, 0.0), (0.0, 100.0)])
+def test_a_point_mass_and_a_difference_that_no_motion_shows_are_taken(inertia, hub):
+    assert (
+        Arm.from_table(table(link=LINK | {"inertia": inertia}, hub={"inertia": hub}), "machine").value("link.inertia") == inertia
+    )
+
+
+def test_a_fitted_link_is_read_whatever_share_of_its_moment_is_mass(tmp_path):
+    heavier = replace(pendulum().with_values({"link.mass": 5.0}), fitted={"link.mass": {}})
+    heavier.save(tmp_path / "fitted.toml")
+    assert Arm.load(tmp_path / "fitted.toml").value("link.mass") == 5.0
