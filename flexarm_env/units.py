@@ -22,6 +22,7 @@ _UNIT = re.compile(rf"(?:1 */ *)?{_FACTOR}(?: *[*/·] *{_FACTOR}| +{_FACTOR})*")
 _NUMBER = r"[+-]?(?:\d++(?:\.\d*+)?+|\.\d++)(?:[eE][+-]?\d++)?+"
 _QUANTITY = re.compile(rf"({_NUMBER})(?:(?:\s++(?=1 */)|\s*+(?=[^\d\s.,:;-]))(.*+))?+")
 _LONGEST = 60
+_PERCENT = ("%", "percent")
 # Without these pint reads Nm as "number metre", a count of yarn, and the others not at all.
 _COMPOUNDS = (
     "newton_meter = newton * meter = Nm",
@@ -220,7 +221,8 @@ def quantity(value: str | float, target: str) -> float:
         return as_float(value)
     number, unit = split(value)
     if unit and not target:
-        raise InputError(f"unit '{unit}' on a bare number; write {number:g}")
+        bare = number / 100.0 if unit in _PERCENT else number
+        raise InputError(f"unit '{unit}' on a bare number; write {bare:g}")
     return number * factor(unit, target) if unit else number
 
 
