@@ -23,6 +23,7 @@ from flexarm_env import Arm, InputError, __version__
 from flexarm_env.controllers import CONTROLLERS
 from flexarm_env.files import write_whole
 from flexarm_env.tasks import TASKS
+from flexarm_env.terminal.outputs import make_folder
 from flexarm_env.terminal.provenance import commit
 from flexarm_env.trials.measures import MEASURES, measure
 from flexarm_env.trials.rollout import roll_out
@@ -115,6 +116,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         if asked.count < 1 or asked.jobs < 1:
             raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
+        make_folder(asked.save, "policies.json", "policies.md", "curves.png")
         policies = find_policies(asked.policies)
         Arm.load(asked.arm)
         began = time.perf_counter()
@@ -134,7 +136,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "policies": about(policies),
         "tasks": found,
     }
-    asked.save.mkdir(parents=True, exist_ok=True)
     write_whole(asked.save / "policies.json", json.dumps(result, indent=1, ensure_ascii=False) + "\n")
     write_whole(asked.save / "policies.md", report_of(result))
     draw_curves({name: [Artefact.load(path) for path in paths] for name, paths in policies.items()}, asked.save / "curves.png")

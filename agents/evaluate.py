@@ -20,6 +20,7 @@ from flexarm_env.controllers import CONTROLLERS, make_controller
 from flexarm_env.errors import did_you_mean
 from flexarm_env.files import write_whole
 from flexarm_env.tasks import TASKS
+from flexarm_env.terminal.outputs import make_folder
 from flexarm_env.terminal.provenance import commit
 from flexarm_env.trials.measures import MEASURES, measure
 from flexarm_env.trials.rollout import roll_out
@@ -86,6 +87,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if asked.count < 1 or asked.jobs < 1:
             raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
         Arm.load(asked.arm)
+        make_folder(asked.save, "baselines.json", "baselines.md")
     except InputError as error:
         print(error, file=sys.stderr)
         return 2
@@ -104,7 +106,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "controllers": {name: CONTROLLERS[name].meaning for name in asked.controllers},
         "cells": cells,
     }
-    asked.save.mkdir(parents=True, exist_ok=True)
     write_whole(asked.save / "baselines.json", json.dumps(result, indent=1, ensure_ascii=False) + "\n")
     write_whole(asked.save / "baselines.md", table_of(result))
     print(f"{asked.save / 'baselines.md'}: {len(asked.controllers)} controllers in {result['seconds']} s")

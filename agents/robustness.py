@@ -25,6 +25,7 @@ from flexarm_env.controllers import CONTROLLERS
 from flexarm_env.errors import did_you_mean
 from flexarm_env.files import write_whole
 from flexarm_env.tasks import TASKS
+from flexarm_env.terminal.outputs import make_folder
 from flexarm_env.terminal.provenance import commit
 from flexarm_env.trials.measures import MEASURES, measure
 from flexarm_env.trials.rollout import roll_out
@@ -154,13 +155,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         if asked.count < 1 or asked.jobs < 1:
             raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
+        make_folder(asked.save, "robustness.json", "robustness.md")
         agents = chosen(asked.names, asked.policies)
         values = evaluate(agents, asked.arm, asked.count, first_seed_of(asked), asked.jobs)
     except InputError as error:
         print(error, file=sys.stderr)
         return 2
     result = result_of(asked, agents, values, time.perf_counter() - began)
-    asked.save.mkdir(parents=True, exist_ok=True)
     write_whole(asked.save / "robustness.json", json.dumps(result, indent=1, ensure_ascii=False) + "\n")
     write_whole(asked.save / "robustness.md", report_of(result))
     print(f"{asked.save / 'robustness.md'}: {len(agents)} controllers and policies, {result['seconds']} s")
