@@ -22,6 +22,7 @@ from agents.train import FOLDER
 from flexarm_env import Arm, InputError
 from flexarm_env.controllers import CONTROLLERS
 from flexarm_env.tasks import TASKS
+from flexarm_env.terminal.outputs import make_folder
 from flexarm_env.trials.measures import MEASURES, measure
 from flexarm_env.trials.rollout import roll_out
 from flexarm_env.trials.sets import FIRST_SEED, SETS
@@ -113,6 +114,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         if asked.count < 1 or asked.jobs < 1:
             raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
+        make_folder(asked.save, "policies.json", "policies.md", "curves.png")
         policies = find_policies(asked.policies)
         Arm.load(asked.arm)
         began = time.perf_counter()

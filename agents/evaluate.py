@@ -19,6 +19,7 @@ from flexarm_env import Arm, InputError
 from flexarm_env.controllers import CONTROLLERS, make_controller
 from flexarm_env.errors import did_you_mean
 from flexarm_env.tasks import TASKS
+from flexarm_env.terminal.outputs import make_folder
 from flexarm_env.trials.measures import MEASURES, measure
 from flexarm_env.trials.rollout import roll_out
 from flexarm_env.trials.score import worst_tenth
@@ -84,6 +85,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if asked.count < 1 or asked.jobs < 1:
             raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
         Arm.load(asked.arm)
+        make_folder(asked.save, "baselines.json", "baselines.md")
     except InputError as error:
         print(error, file=sys.stderr)
         return 2

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import gymnasium as gym
@@ -13,6 +15,8 @@ from agents.evaluate import FOLDER
 from flexarm_env import Arm
 from flexarm_env.controllers import CONTROLLERS, make_controller
 from flexarm_env.env import FlexArmEnv
+from flexarm_env.errors import InputError
+from flexarm_env.terminal.outputs import make_folder
 from flexarm_env.trials.rollout import Agent
 from flexarm_env.trials.sets import FIRST_SEED
 
@@ -64,20 +68,27 @@ def film(names: tuple[str, str], env_id: str, arm: str, path: Path) -> None:
     # One palette for all, from a picture with a stuck hub, which has every colour; by coverage, so that small marks keep theirs.
     palette = both[-1].quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE)
     both = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in both]
-    path.parent.mkdir(parents=True, exist_ok=True)
     both[0].save(path, save_all=True, append_images=both[1:], duration=1000 // RATE, loop=0, optimize=True)
 
 
-def main() -> None:
-    """Make the film of README.md, or another."""
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Make the film of README.md, or another, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.film", description=__doc__)
     parser.add_argument("--controllers", nargs=2, default=["pd", "vibration_dual"], metavar="NAME", help="or files of policies")
     parser.add_argument("--env", default="FlexArm/Slew-v0", help="id of the environment")
     parser.add_argument("--arm", default="thesis", help="name or file of the arm; another than a policy's own is allowed")
     parser.add_argument("--save", type=Path, default=FOLDER / "pd-dual.gif")
-    asked = parser.parse_args()
-    film(tuple(asked.controllers), asked.env, asked.arm, asked.save)
+    asked = parser.parse_args(arguments)
+    try:
+        if asked.save.suffix != ".gif":
+            raise InputError(f"--save {asked.save}; name a .gif")
+        make_folder(asked.save.parent, asked.save.name)
+        film(tuple(asked.controllers), asked.env, asked.arm, asked.save)
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

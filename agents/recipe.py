@@ -15,6 +15,7 @@ import gymnasium as gym
 import numpy as np
 
 from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.terminal.outputs import make_folder
 from flexarm_env.trials.measures import TAIL
 from flexarm_env.trials.sets import FIRST_SEED, SEARCH_SEED
 from flexarm_env.wrappers import Shaped
@@ -123,10 +124,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 raise InputError(f"no recipe '{name}'{did_you_mean(name, RECIPES)}")
         if min(asked.seeds) < 0:
             raise InputError(f"--seeds {min(asked.seeds)}; give whole numbers from 0 up")
+        make_folder(asked.save)
     except InputError as error:
         print(error, file=sys.stderr)
         return 2
-    asked.save.mkdir(parents=True, exist_ok=True)
     for name in asked.recipes:
         for seed in asked.seeds:
             place = asked.save / f"{name}-{seed}.json"

@@ -24,6 +24,7 @@ from flexarm_env import Arm, InputError
 from flexarm_env.controllers import CONTROLLERS
 from flexarm_env.errors import did_you_mean
 from flexarm_env.tasks import TASKS
+from flexarm_env.terminal.outputs import make_folder
 from flexarm_env.trials.measures import MEASURES, measure
 from flexarm_env.trials.rollout import roll_out
 from flexarm_env.trials.score import cost, worst_tenth
@@ -149,6 +150,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         if asked.count < 1 or asked.jobs < 1:
             raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
+        make_folder(asked.save, "robustness.json", "robustness.md")
         agents = chosen(asked.names, asked.policies)
         values = evaluate(agents, asked.arm, asked.count, first_seed_of(asked), asked.jobs)
     except InputError as error:

@@ -32,6 +32,7 @@ from agents.train import place_of
 from flexarm_env import Arm, InputError, Recording, __version__, diagnose
 from flexarm_env.files import write_whole
 from flexarm_env.tasks import TASKS
+from flexarm_env.terminal.outputs import make_folder
 from flexarm_env.terminal.provenance import commit
 from flexarm_env.trials.measures import MEASURES, measure
 from flexarm_env.trials.sets import FIRST_SEED
@@ -136,6 +137,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         if asked.count < 1 or asked.jobs < 1:
             raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
+        make_folder(asked.save, "sim_to_rig.json", "sim_to_rig.md")
         if asked.make:
             make(asked.save, asked.jobs, say)
         there = [case for case in CASES if all(policies_of(asked.save, kind, case) for kind in PLANS)]

@@ -10,6 +10,7 @@ from pathlib import Path
 from agents.learning.options import Plan
 from agents.learning.plan_file import option_table, read_plan
 from flexarm_env.errors import InputError
+from flexarm_env.terminal.outputs import make_folder
 
 FOLDER = Path(__file__).resolve().parent.parent / "results" / "policies" / "weights"
 
@@ -37,6 +38,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             raise InputError("no configuration; name one such as configs/agents/ppo_slew.toml, or use --options")
         if asked.seeds and min(asked.seeds) < 0:
             raise InputError(f"--seeds {min(asked.seeds)}; give whole numbers from 0 up")
+        make_folder(asked.save)
         for config, plan in plans:
             for seed in asked.seeds or range(plan.seeds):
                 one_run(config, plan, seed, asked.save, asked.tensorboard)
@@ -58,7 +60,6 @@ def one_run(config: Path, plan: Plan, seed: int, folder: Path, tensorboard: Path
     if place.is_file():
         print(f"{place} is there already")
         return
-    folder.mkdir(parents=True, exist_ok=True)
 
     def report(share: float, text: str) -> None:
         print(f"\r{place.stem}: {share:4.0%}  {text:<70}", end="", file=sys.stderr, flush=True)

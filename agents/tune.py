@@ -15,6 +15,7 @@ from agents.learning.options import Plan
 from agents.learning.plan_file import read_plan, read_table
 from flexarm_env import Arm
 from flexarm_env.errors import InputError
+from flexarm_env.terminal.outputs import make_folder
 from flexarm_env.tuning.judge import cells_of, score
 from flexarm_env.tuning.search import Budget, tune
 from flexarm_env.tuning.spaces import SPACES, Range, nested, space_of
@@ -93,6 +94,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         for subject in asked.subjects:
             if not subject.endswith(".toml"):
                 space_of(subject)
+                make_folder(asked.save, place_of(subject))
         for subject in asked.subjects:
             one_search(subject, asked, budget)
     except InputError as error:
@@ -104,6 +106,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
+def place_of(law: str) -> str:
+    """Name the file of a tuned law."""
+    return f"{law}_tuned.toml"
+
+
 def one_search(subject: str, asked: argparse.Namespace, budget: Budget) -> None:
     """Search for the options of one law or policy, and write or print them."""
     if subject.endswith(".toml"):
@@ -111,8 +118,7 @@ def one_search(subject: str, asked: argparse.Namespace, budget: Budget) -> None:
         print(f"\n{subject}", *(f"{path} = {value:.4g}" for path, value in values.items()), sep="\n")
         return
     found = tune(subject, Arm.load(asked.arm), budget, asked.journal, said(subject, budget))
-    place = asked.save / f"{subject}_tuned.toml"
-    asked.save.mkdir(parents=True, exist_ok=True)
+    place = asked.save / place_of(subject)
     found.save(place)
     print(f"\n{place}: {found.search['score_before']} before, {found.search['score']} tuned")
 

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 #: Least resistance [ohm] of an armature under voltage: it divides the command.
 LEAST_RESISTANCE = 1e-6
+#: Share of an arm's inertia that no motion shows.
+NEGLIGIBLE = 1e-3
 #: Noise of a sensor that is estimated from the recordings.
 AUTO = "auto"
 BESIDE = ("columns", "conditions", "controller", "fitted", "origin")
@@ -128,6 +130,8 @@ def _constants(table: Mapping[str, Any]) -> tuple[str, dict[str, dict[str, float
     if command == "torque" and "torque_constant" in drive:
         raise InputError('drive.torque_constant: a torque drive has none; take it out, or write input = "current"')
     check_constants(command, constants)
+    if "fitted" not in table and "origin" not in table:  # a fit moves mass and inertia: motion shows mass times centre alone
+        _check_link(constants)
     return command, constants
 
 
@@ -186,6 +190,21 @@ def _check_bodies(constants: Mapping[str, Mapping[str, float]]) -> None:
             raise InputError("drive.gear_stiffness and [joint] are both there: an arm has one spring; keep one of them")
     elif not link and not front:
         raise InputError("hub.inertia is 0 and there is neither beam nor link: nothing could move")
+
+
+def _check_link(constants: Mapping[str, Mapping[str, float]]) -> None:
+    """Refuse a link with less inertia about the axis than its mass has as a point, but for a difference that no motion shows."""
+    if "link" not in constants:
+        return
+    link, drive = constants["link"], constants["drive"]
+    least = link["mass"] * link["centre"] ** 2
+    before = constants["hub"]["inertia"] + drive["motor_inertia"] * drive["gear_ratio"] ** 2
+    whole = link["inertia"] + (0.0 if "joint" in constants else before)
+    if least - link["inertia"] > NEGLIGIBLE * whole:
+        raise InputError(
+            f"link.inertia = {link['inertia']:g} kg*m**2 is below mass times centre squared, {least:g}: it is about the axis; "
+            f"write {least + link['inertia']:g} if yours is about the centre of mass"
+        )
 
 
 def _fixed(given: Any, constants: Mapping[str, Any], sensors: Mapping[str, Any]) -> list[str]:

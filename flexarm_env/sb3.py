@@ -8,11 +8,13 @@ from typing import Any
 
 import gymnasium as gym
 import numpy as np
+from gymnasium.envs.registration import load_env_creator
 from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
 from flexarm_env.env.infos import Infos, Step
-from flexarm_env.errors import InputError
+from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.registration import IDS, SHAPED
 from flexarm_env.vector_env import FlexArmVectorEnv
 from flexarm_env.wrappers import ShapedVector
 
@@ -40,7 +42,7 @@ def make_vec(id: str, num_envs: int = 1, seed: int | None = None, **arguments: A
         arguments: of FlexArmVectorEnv.
 
     Raises:
-        InputError: for arguments that do not exist or do not make sense.
+        InputError: for an id of no environment of arms, and arguments that do not exist or do not make sense.
 
     Examples:
         >>> vec = make_vec("FlexArm/Slew-v0", 8, seed=0)
@@ -48,13 +50,26 @@ def make_vec(id: str, num_envs: int = 1, seed: int | None = None, **arguments: A
         (8, 5)
         >>> vec.close()
     """
-    made = gym.make_vec(
-        id, num_envs, vectorization_mode="vector_entry_point", autoreset_mode=AutoresetMode.SAME_STEP, **arguments
-    )
+    _refuse_other(id)
+    try:
+        made = gym.make_vec(
+            id, num_envs, vectorization_mode="vector_entry_point", autoreset_mode=AutoresetMode.SAME_STEP, **arguments
+        )
+    except gym.error.Error:
+        raise InputError(f"no environment {id!r}{did_you_mean(str(id), (*IDS, *SHAPED))}") from None
     assert isinstance(made, FlexArmVectorEnv | ShapedVector)
     vec = FlexArmVecEnv(made)
     vec.seed(seed)
     return vec
+
+
+def _refuse_other(id: str) -> None:
+    """Refuse the id of an environment of another kind than arms."""
+    spec = gym.registry.get(id)
+    entry = spec.vector_entry_point if spec else FlexArmVectorEnv
+    made = load_env_creator(entry) if isinstance(entry, str) else entry
+    if made is None or (isinstance(made, type) and not issubclass(made, FlexArmVectorEnv | ShapedVector)):
+        raise InputError(f"{id!r} is no environment of arms; allowed: {', '.join((*IDS, *SHAPED))}")
 
 
 class FlexArmVecEnv(VecEnv):

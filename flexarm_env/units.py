@@ -22,6 +22,7 @@ _UNIT = re.compile(rf"(?:1 */ *)?{_FACTOR}(?: *[*/·] *{_FACTOR}| +{_FACTOR})*")
 _NUMBER = r"[+-]?(?:\d++(?:\.\d*+)?+|\.\d++)(?:[eE][+-]?\d++)?+"
 _QUANTITY = re.compile(rf"({_NUMBER})(?:(?:\s++(?=1 */)|\s*+(?=[^\d\s.,:;-]))(.*+))?+")
 _LONGEST = 60
+_PERCENT = ("%", "percent")
 # Without these pint reads Nm as "number metre", a count of yarn, and the others not at all.
 _COMPOUNDS = (
     "newton_meter = newton * meter = Nm",
@@ -220,22 +221,62 @@ def quantity(value: str | float, target: str) -> float:
         return as_float(value)
     number, unit = split(value)
     if unit and not target:
-        raise InputError(f"unit '{unit}' on a bare number; write {number:g}")
+        bare = number / 100.0 if unit in _PERCENT else number
+        raise InputError(f"unit '{unit}' on a bare number; write {bare:g}")
     return number * factor(unit, target) if unit else number
 
 
-def base_value(text: str) -> float:
+class BaseValue(float):
+    """A number in SI base units that knows them.
+
+    Attributes:
+        unit: such as "kg"; "" where none was stated.
+
+    Example:
+        >>> BaseValue(0.3, "kg").unit, BaseValue(0.3, "kg") + 1.0
+        ('kg', 1.3)
+    """
+
+    unit: str
+
+    def __new__(cls, number: float, unit: str = "") -> BaseValue:
+        """Make a number of a unit, which is one of SI's base units or a product of them."""
+        made = super().__new__(cls, number)
+        made.unit = unit
+        return made
+
+
+def base_value(text: str) -> BaseValue:
     """Convert a quantity to SI base units; a number without a unit is kept.
 
     Raises:
         InputError: for a text that is not a number with a unit, or an unknown unit.
 
     Example:
-        >>> base_value("20 degC")
-        293.15
+        >>> base_value("20 degC"), base_value("300 g").unit
+        (293.15, 'kg')
     """
     number, unit = split(text)
-    if not unit:
-        return number
-    parsed = _parse(unit, "SI")
-    return float(_registry().Quantity(number, parsed).to_base_units().magnitude)
+    return in_base(number, unit)
+
+
+def in_base(number: float, *stated: str) -> BaseValue:
+    """Convert a number of a unit, or of a product of units, to SI base units; "" is none.
+
+    Raises:
+        InputError: for an unknown unit, or a product with one of another zero, such as degC.
+
+    Example:
+        >>> in_base(2.0, "rad/V", "mV"), in_base(2.0, "rad/V", "mV").unit
+        (0.002, 'rad')
+    """
+    import pint
+
+    parsed = [_parse(unit, "SI") for unit in stated if unit]
+    if not parsed:
+        return BaseValue(number)
+    try:
+        found = _registry().Quantity(number, math.prod(parsed[1:], start=parsed[0])).to_base_units()
+    except pint.PintError:
+        raise InputError(f"{' × '.join(stated)} is no unit; {_allowed('SI')}") from None
+    return BaseValue(float(found.magnitude), f"{found.units:~}")

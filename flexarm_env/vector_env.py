@@ -14,7 +14,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.env.arguments import ArmLike, EnvArguments, find_prior, make_setup
+from flexarm_env.env.arguments import ArmLike, EnvArguments, check_count, find_prior, make_setup
 from flexarm_env.env.batch import Batch
 from flexarm_env.env.flexarm import spaces_of
 from flexarm_env.env.layout import REWARD, SAMPLE_COUNT, TERMINATED
@@ -78,8 +78,8 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         **arguments: Unpack[EnvArguments],
     ) -> None:
         for name, value in (("num_envs", num_envs), ("threads", threads), ("max_episode_steps", max_episode_steps)):
-            if value is not None and not (isinstance(value, int | np.integer) and value >= 1):
-                raise InputError(f"{name} = {value!r}; give a whole number from 1 up")
+            if value is not None or name != "max_episode_steps":
+                check_count(name, value)
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise InputError(f"render_mode = {render_mode!r}; a vector environment has 'rgb_array' and None")
         self.setup = make_setup(task, arm, arguments, FURTHER_ARGUMENTS)

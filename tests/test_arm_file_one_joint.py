@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -40,6 +41,9 @@ def table(**changes: Any) -> dict[str, Any]:
         ({"drive": TORQUE | {"enabled": 0.5}}, r"drive\.enabled = 0\.5; write 1 .* 0"),
         ({"link": LINK | {"tilt": 0.1}}, r"link\.vertical and link\.tilt are both there"),
         ({"link": LINK | {"vertical": "yes"}}, r"link\.vertical = 'yes'; write true or false"),
+        ({"drive": SERVO | {"largest_duty": "90 %"}}, r"drive\.largest_duty: unit '%' on a bare number; write 0\.9$"),
+        ({"drive": TORQUE | {"efficiency": "85 percent"}}, r"drive\.efficiency: unit 'percent' on a bare number; write 0\.85$"),
+        ({"effects": {"load_friction": {"coefficient": "5%"}}}, r"coefficient: unit '%' on a bare number; write 0\.05$"),
         ({"link": LINK | {"center": 0.1}}, r"unknown key 'link\.center'; did you mean 'centre'"),
         ({"link": None}, r"table \[hub\] is missing"),
         ({"link": None, "hub": {"inertia": 0}}, r"hub\.inertia is 0 and there is neither beam nor link"),
@@ -85,3 +89,29 @@ def test_an_arm_says_what_it_has():
     assert [arm.has("motor") for arm in (servo(), pendulum())] == [True, False]
     assert [arm.can_have("current_lag") for arm in (servo(), pendulum())] == [False, True]
     assert [arm.has("windup") for arm in (servo(), elastic_joint(), Arm.load("emps"))] == [True, True, False]
+
+
+@pytest.mark.parametrize(
+    ("inertia", "hub", "words"),
+    [
+        (0.005, 0.0, r"link\.inertia = 0\.005 kg\*m\*\*2 is below mass times centre squared, 0\.02: .* axis; write 0\.025 if"),
+        (0.0, 1.0, r"link\.inertia = 0 kg\*m\*\*2 is below mass times centre squared, 0\.02"),
+    ],
+)
+def test_a_link_with_less_inertia_than_its_mass_as_a_point_is_refused(inertia, hub, words):
+    with pytest.raises(InputError, match=words) as refusal:
+        Arm.from_table(table(link=LINK | {"inertia": inertia}, hub={"inertia": hub}), "machine")
+    assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(("inertia", "hub"), [(0.5 * 0.2**2, 0.0), (0.02 - 1e-12, 0.0), (0.0, 100.0)])
+def test_a_point_mass_and_a_difference_that_no_motion_shows_are_taken(inertia, hub):
+    assert (
+        Arm.from_table(table(link=LINK | {"inertia": inertia}, hub={"inertia": hub}), "machine").value("link.inertia") == inertia
+    )
+
+
+def test_a_fitted_link_is_read_whatever_share_of_its_moment_is_mass(tmp_path):
+    heavier = replace(pendulum().with_values({"link.mass": 5.0}), fitted={"link.mass": {}})
+    heavier.save(tmp_path / "fitted.toml")
+    assert Arm.load(tmp_path / "fitted.toml").value("link.mass") == 5.0

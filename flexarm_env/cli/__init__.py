@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import warnings
 from collections.abc import Sequence
+from typing import Any
 
-DONE, NO, BAD_INPUT, STOPPED = 0, 1, 2, 130
+#: As shells count: 128 and the number of the signal.
+DONE, NO, BAD_INPUT, STOPPED, TERMINATED = 0, 1, 2, 130, 143
 
 
 def main() -> None:
     """Run the command line and leave with its exit code."""
+    signal.signal(signal.SIGTERM, _terminate)
     sys.exit(run(sys.argv[1:]))
+
+
+def _terminate(number: int, frame: Any) -> None:
+    """Leave through every cleanup, as Ctrl-C does: a signal's own end would leave shared memory behind."""
+    raise SystemExit(TERMINATED)
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -41,6 +50,10 @@ def run(arguments: Sequence[str]) -> int:
         return complain(f"{place}{error.strerror or error}; check the path, its permissions and the disk")
     except KeyboardInterrupt:
         return complain("stopped", STOPPED)
+    except SystemExit as end:
+        if end.code != TERMINATED:
+            raise
+        return complain("stopped", TERMINATED)
     except Exception as error:
         return _other(error)
 

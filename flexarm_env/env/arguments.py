@@ -50,6 +50,16 @@ LARGEST_GOAL = ArmAngle.range_end()
 NAMES = ("task", "arm", *EnvArguments.__annotations__, "render_mode")
 
 
+def check_count(name: str, value: Any) -> None:
+    """Refuse what is no whole number from 1 up.
+
+    Raises:
+        InputError: for such a value.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
+        raise InputError(f"{name} = {value!r}; give a whole number from 1 up")
+
+
 def make_setup(task: str | Task, arm: ArmLike, given: EnvArguments, further: Iterable[str] = ()) -> Setup:
     """Build the setup of an environment from its arguments.
 

@@ -10,6 +10,7 @@ from flexarm_env.errors import InputError
 from flexarm_env.parameters import check_bounds
 from flexarm_env.plant.plant import Plant
 from flexarm_env.recordings.recording import Recording
+from flexarm_env.units import BaseValue, quantity
 
 #: The condition of a recording that states a mass at the tip.
 PAYLOAD = "payload"
@@ -42,8 +43,9 @@ def check_stated(arm: Arm, recording: Recording) -> None:
     """Refuse a payload that the arm has no tip to carry, and a value out of bounds or with which there is no such arm.
 
     Raises:
-        InputError: for such a condition.
+        InputError: for such a condition, or one in a unit of another quantity.
     """
+    _check_units(arm, recording)
     stated = dict(stated_by(arm, recording))
     payload = stated.pop(PAYLOAD, 0.0)
     for path, value in stated.items():
@@ -60,6 +62,19 @@ def check_stated(arm: Arm, recording: Recording) -> None:
             f"{recording.name} states a payload of {payload:g} kg, but arm '{arm.name}' has no tip to carry it; "
             "add [beam], or a length to [link], or put the load into hub.inertia and take the line '# payload' out"
         )
+
+
+def _check_units(arm: Arm, recording: Recording) -> None:
+    """Refuse a condition in a unit that measures another quantity than the constant that it sets."""
+    for name, path in arm.conditions.items():
+        value = recording.conditions.get(name, 0.0)
+        if isinstance(value, BaseValue) and value.unit:
+            try:
+                quantity(f"{value!r} {value.unit}", arm.parameter(path).unit)
+            except InputError as error:
+                raise InputError(
+                    f"{recording.name}: condition '{name}' is {value:g} {value.unit}, and sets {path}: {error}"
+                ) from None
 
 
 def with_stated(arm: Arm, stated: Stated) -> Arm:

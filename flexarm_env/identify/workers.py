@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 import os
+import signal
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass, field
-from functools import lru_cache
 from itertools import takewhile
+from multiprocessing import resource_tracker
 from typing import Any
 
 from joblib import Parallel, delayed, parallel_config
+from joblib.externals.loky.backend import resource_tracker as loky_tracker
 
 from flexarm_env.identify.deadline import Deadline
 
@@ -52,21 +55,42 @@ class Workers:
             yield from self._spread(takewhile(lambda task: not self.deadline.is_over, tasks), "n_jobs")  # none waits
 
     def _spread(self, tasks: Iterable[Task], ahead: str) -> Iterator[Any]:
-        calls = (delayed(_run)(os.getpid(), function, arguments) for function, arguments in tasks)
-        yield from Parallel(n_jobs=self.jobs, return_as="generator", pre_dispatch=ahead)(calls)
+        calls = (delayed(function)(*arguments) for function, arguments in tasks)
+        watched = {"initializer": _end_with, "initargs": (os.getpid(),)}
+        with ExitStack() as interrupts:
+            interrupts.enter_context(_interrupts_held())
+            results = Parallel(n_jobs=self.jobs, return_as="generator", pre_dispatch=ahead, **watched)(calls)
+            with closing(results):
+                interrupts.close()
+                yield from results
 
     def threads(self) -> parallel_config:
         """Open a context in which columns of Jacobians are computed in threads: replays release the interpreter."""
         return parallel_config(backend="threading", n_jobs=self.jobs)
 
 
-def _run(parent: int, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
-    if os.getppid() == parent:
-        _end_with(parent)
-    return function(*arguments)
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Hold back Ctrl-C and a termination until the end.
+
+    Processes that start meanwhile never meet Ctrl-C, which a terminal sends to them, too: they end with this one.
+    """
+    came: list[int] = []
+    with ExitStack() as restored:
+        if threading.current_thread() is threading.main_thread():
+            for number in (signal.SIGINT, signal.SIGTERM):
+                before = signal.signal(number, lambda number, frame: came.append(number))
+                restored.callback(signal.signal, number, before or signal.SIG_DFL)
+        if hasattr(signal, "pthread_sigmask"):
+            for tracker in (resource_tracker, loky_tracker):
+                tracker.ensure_running()  # its start lets interrupts through again
+            mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            restored.callback(signal.pthread_sigmask, signal.SIG_SETMASK, mask)
+        yield
+    if came:
+        signal.raise_signal(came[0])
 
 
-@lru_cache(maxsize=1)
 def _end_with(parent: int) -> None:
     """End this process soon after the one that started it: one that is killed tells its workers nothing."""
 

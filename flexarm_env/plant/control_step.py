@@ -127,7 +127,8 @@ def uneven_step(a: Arrays, before: float, command: float, interval: float) -> No
     late = interval - early
     if early > 0.0:
         move(a, before, early, UNTABULATED)
-    count = max(math.ceil(late / d[at.LATE_LENGTH] - 1e-9), 1) if late > 0.0 else 0
+    longest = max(d[at.EARLY_LENGTH], d[at.LATE_LENGTH])  # one of them is next to nothing where the delay ends at a sample
+    count = max(math.ceil(late / longest - 1e-9), 1) if late > 0.0 else 0
     for j in range(count):
         now = mean_during_ramp(d, n, before, command, j * late / count, (j + 1) * late / count)
         apply_command(n, a.s, now)

@@ -178,11 +178,11 @@ def si_factor(name: str, source: Source, calibration: Mapping[str, float]) -> fl
         raise InputError(f"column '{name}': {error}") from None
 
 
-def base_value(number: float, source: Source) -> float:
+def base_value(number: float, source: Source) -> units.BaseValue:
     """Convert a number of the file to SI base units."""
     scale, scale_unit = (float(source.scale), "") if isinstance(source.scale, int | float) else units.split(source.scale)
-    factor = source.sign * scale * (units.base_value(f"1 {scale_unit}") if scale_unit else 1.0)
-    return number * factor * (units.base_value(f"1 {source.unit}") if source.unit not in ("", "1") else 1.0)
+    unit = "" if source.unit == "1" else source.unit
+    return units.in_base(source.sign * scale * number, scale_unit, unit)
 
 
 def _in_volts(source: Source) -> bool:

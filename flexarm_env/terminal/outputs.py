@@ -84,7 +84,7 @@ def make_folder(folder: Path, *names: str) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"cannot make folder {folder}: {error.strerror}; name another with --output") from None
+        raise InputError(f"cannot make folder {folder}: {error.strerror}; name another") from None
     check_places(None, *(folder / name for name in names))
 
 

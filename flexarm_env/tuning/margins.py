@@ -24,6 +24,8 @@ ENDED, STRETCH = 1e-5, 400
 LONGEST = 40_000
 #: Effects without which an arm's friction is linear.
 DRY_FRICTION = ("coulomb", "asymmetric_coulomb", "stiction", "stribeck", "presliding", "load_friction", "position_friction")
+#: Share of a sample below which two instants are one.
+SAME_INSTANT = 1e-9
 #: Least number of points of the Fourier transform.
 POINTS = 2**16
 
@@ -144,20 +146,20 @@ def sensitivity(controller: Controller, arm: Arm, speed: float = 0.0) -> Floats:
     Raises:
         InputError: for a loop in which the response does not end.
     """
-    model = linearise(arm, "moving", controller.interval)
+    model, late = linearise(arm, "moving", controller.interval), _late(arm, controller.interval)
     base = np.append(model.offset, 0.0)
     base[model.outputs.index("motor_speed")] += speed
     impulse = IMPULSE * (controller.limit if controller.limit > 0.0 else 1.0)
     state, response = np.zeros(len(model.states)), np.zeros(LONGEST)
-    late = [0.0] * round(arm.structure().input_delay / controller.interval)
+    sent = [0.0] * (len(late.responses) + late.samples)  # commands, the latest first
     controller.reset(2)
     seen = np.array([base, base])
     for k in range(LONGEST):
         seen[1, :-1] = base[:-1] + model.output @ state
         commands = controller.act(seen)
         response[k] = (commands[1] - commands[0]) / impulse + (k == 1)
-        late.append(response[k] * impulse)
-        state = model.transition @ state + model.response[:, 0] * late.pop(0)
+        sent = [response[k] * impulse, *sent[:-1]]
+        state = model.transition @ state + late.responses.T @ sent[late.samples :]
         if not np.isfinite(response[k]) or abs(response[k]) > 1.0 / ENDED:
             break
         if (
@@ -166,3 +168,28 @@ def sensitivity(controller: Controller, arm: Arm, speed: float = 0.0) -> Floats:
         ):
             return response[1 : k + 1]
     raise InputError(f"the loop of {type(controller).__name__} and arm '{arm.name}' is not stable: it has no margins")
+
+
+@dataclass(frozen=True)
+class Late:
+    """The effect of held commands on an arm that receives them late.
+
+    Attributes:
+        samples: whole samples of the delay.
+        responses: (1 or 2, states) to the command of so many samples ago, and to the one before in the rest of the delay.
+    """
+
+    samples: int
+    responses: Floats
+
+
+def _late(arm: Arm, interval: float) -> Late:
+    """Split the arm's dead time into whole samples and a rest, in which the command before still acts."""
+    delay = arm.structure().input_delay
+    samples = int(delay / interval)
+    rest = delay - samples * interval
+    if min(rest, interval - rest) < SAME_INSTANT * interval:
+        model = linearise(arm, "moving", interval)
+        return Late(round(delay / interval), model.response[:, :1].T)
+    first, then = linearise(arm, "moving", rest), linearise(arm, "moving", interval - rest)
+    return Late(samples, np.array([then.response[:, 0], then.transition @ first.response[:, 0]]))

@@ -11,6 +11,7 @@ from gymnasium.vector import AutoresetMode, VectorWrapper
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
+from flexarm_env.env.arguments import check_count
 from flexarm_env.env.batch import Batch
 from flexarm_env.errors import InputError
 from flexarm_env.vector_env import FlexArmVectorEnv
@@ -33,8 +34,8 @@ class ShapedVector(VectorWrapper[Array, Array, Array, Array, Array]):
         max_episode_steps: actions after which episodes are truncated; those of the task's duration by default.
 
     Raises:
-        InputError: for an environment of another kind, observations that are not physical, options that do not exist, or an arm
-            that lacks what they need.
+        InputError: for an environment of another kind, observations that are not physical, options that do not exist, an arm that
+            lacks what they need, or a number of actions that is no whole number from 1 up.
 
     Examples:
         >>> env = ShapedVector(FlexArmVectorEnv(3, "slew", physical=True), {"base": "pd", "repeat": 4})
@@ -52,6 +53,8 @@ class ShapedVector(VectorWrapper[Array, Array, Array, Array, Array]):
         reward: RewardOptions | Mapping[str, Any] | None = RewardOptions(),  # noqa: B008 - frozen
         max_episode_steps: int | None = None,
     ) -> None:
+        if max_episode_steps is not None:
+            check_count("max_episode_steps", max_episode_steps)
         super().__init__(env)
         self.arms = refuse_other(env, FlexArmVectorEnv)
         self.shaping = Shaping(env.setup, env.batch, env.prior, interface, reward)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from cli_stand_ins import GOOD_ARM
+from processes import LISTED, command_line, descendants, is_alive, wait_for
 
 import flexarm_env
 from flexarm_env.arm_file import shipped_arms
@@ -73,3 +76,38 @@ def test_a_reader_that_leaves_early_loses_no_file(tmp_path):
     assert run.returncode == 0, run.stderr
     assert (tmp_path / "x.toml").is_file()
     assert (tmp_path / "x.json").is_file()
+
+
+@LISTED
+@pytest.mark.parametrize(
+    ("number", "code", "age"),
+    [
+        pytest.param(signal.SIGINT, 130, 0.0, id="Ctrl-C while its workers start"),
+        pytest.param(signal.SIGTERM, 143, 0.0, id="terminated while its workers start"),
+        pytest.param(signal.SIGINT, 130, 2.0, id="Ctrl-C", marks=pytest.mark.slow(minutes=1)),
+        pytest.param(signal.SIGTERM, 143, 2.0, id="terminated", marks=pytest.mark.slow(minutes=1)),
+    ],
+)
+def test_a_stopped_diagnosis_ends_at_once_and_leaves_nothing(tmp_path, number, code, age):
+    made, shared = tmp_path / "made.csv", tmp_path / "shared"
+    shared.mkdir()
+    assert process("simulate", "--input", "square", "--duration", "6", "--save", made).returncode == 0
+    environment = os.environ | {"PYTHONPATH": str(Path(flexarm_env.__file__).parents[1]), "JOBLIB_TEMP_FOLDER": str(shared)}
+    command = [sys.executable, "-c", "from flexarm_env.cli import main; main()", "diagnose", str(made), "--jobs", "2"]
+    run = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, env=environment, start_new_session=True)
+
+    def workers() -> list[int]:
+        return [child for child in descendants(run.pid) if "LokyProcess" in command_line(child)]
+
+    wait_for(lambda: len(workers()) == 2 or run.poll() is not None, 60)
+    wait_for(lambda: run.poll() is not None, age)
+    helpers = descendants(run.pid)
+    assert len(workers()) == 2
+    reaches = os.killpg if number == signal.SIGINT else os.kill  # a terminal stops the whole group
+    reaches(run.pid, number)
+    _, errors = run.communicate(timeout=10)
+    assert (run.returncode, errors.decode()) == (code, "flexarm: stopped\n")
+    wait_for(lambda: not any(map(is_alive, helpers)), 10)
+    assert not [helper for helper in helpers if is_alive(helper)]
+    assert list(shared.iterdir()) == []
+    assert not list(Path("/dev/shm").glob(f"sem.loky-{run.pid}-*"))

@@ -207,3 +207,28 @@ def test_algorithms_train(algorithm: type, policy: str, options: dict, single: b
     model = algorithm(policy, env, seed=0, device="cpu", **options)
     model.learn(256)
     assert model.num_timesteps >= 256
+
+
+@pytest.mark.parametrize(
+    ("id", "words"),
+    [
+        ("FlexArm/Slw-v0", "no environment 'FlexArm/Slw-v0'; did you mean 'FlexArm/Slew-v0'?"),
+        ("Slew-Goal-v0", "no environment 'Slew-Goal-v0'; did you mean 'FlexArm/Slew-Goal-v0'?"),
+        ("FlexArm/Slew-v9", "no environment 'FlexArm/Slew-v9'; did you mean 'FlexArm/Slew-v0'?"),
+        ("FlexArm/Slew v0", "no environment 'FlexArm/Slew v0'; did you mean 'FlexArm/Slew-v0'?"),
+        (3, "no environment 3; allowed: FlexArm/Damp-Goal-v0, "),
+        ("CartPole-v1", "'CartPole-v1' is no environment of arms; allowed: FlexArm/Damp-v0, "),
+        ("Pendulum-v1", "'Pendulum-v1' is no environment of arms; allowed: FlexArm/Damp-v0, "),
+    ],
+)
+def test_an_id_of_no_arms_is_refused_in_one_line(id, words: str) -> None:
+    with pytest.raises(InputError) as refusal:
+        make_vec(id, 2)
+    assert str(refusal.value).startswith(words)
+    assert "\n" not in str(refusal.value)
+
+
+def test_an_id_that_names_its_module_is_taken() -> None:
+    vec = make_vec("flexarm_env:FlexArm/Slew-v0", 2)
+    assert vec.num_envs == 2
+    vec.close()

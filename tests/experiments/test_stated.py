@@ -109,3 +109,46 @@ def test_a_value_with_which_there_is_no_such_arm_is_refused():
     run = replace(loaded(rigid(), "cold", 3.0), conditions={"ohm": 0.0})
     with pytest.raises(InputError, match=r"cold states drive\.resistance = 0: drive\.resistance is missing or below 1e-06 ohm"):
         check_stated(arm, run)
+
+
+HEADER = "time [s],current [A],arm_angle [rad]\n0,0,0\n0.1,1,0\n0.2,1,0.01\n"
+
+
+def read_stating(tmp_path, text: str, where: str) -> Recording:
+    """A recording that states the load in a remark, in a file beside it, or in a column."""
+    path = tmp_path / "run.csv"
+    path.write_text(f"# load = {text}\n{HEADER}" if where == "remark" else HEADER)
+    if where == "sidecar":
+        (tmp_path / "run.toml").write_text(f"[conditions]\nload = '{text}'\n")
+    if where != "column":
+        return Recording.read(path)
+    number, _, unit = text.partition(" ")
+    places = {"time": (0, "s"), "current": (1, "A"), "arm_angle": (2, "rad"), "load": (3, unit)}
+    path.write_text("\n".join(f"{line},{number}" for line in HEADER.splitlines()[1:]) + "\n")
+    columns = {name: {"index": index, "unit": unit} for name, (index, unit) in places.items()}
+    return Recording.read(path, columns | {"conditions": {"load": columns.pop("load")}})
+
+
+@pytest.mark.parametrize("where", ["remark", "sidecar", "column"])
+def test_a_condition_in_a_unit_of_another_quantity_is_refused(tmp_path, where):
+    with pytest.raises(InputError) as refusal:
+        check_stated(rigid(), read_stating(tmp_path, "300 g", where))
+    expected = "run: condition 'load' is 0.3 kg, and sets hub.inertia: unit 'kg' does not convert to kg*m**2"
+    assert str(refusal.value) == f"{expected}; write a unit that converts to kg*m**2"
+
+
+@pytest.mark.parametrize("where", ["remark", "sidecar", "column"])
+def test_a_condition_in_another_unit_of_the_same_quantity_is_taken(tmp_path, where):
+    arm, run = rigid(), read_stating(tmp_path, "300 g*m^2", where)
+    check_stated(arm, run)
+    assert stated_by(arm, run) == ((INERTIA, pytest.approx(0.3, rel=1e-12)),)
+    run.write(tmp_path / "again.csv")
+    again = Recording.read(tmp_path / "again.csv")
+    check_stated(arm, again)
+    assert again.conditions == run.conditions
+    with pytest.raises(InputError, match=r"hub\.inertia"):
+        check_stated(arm, replace(again, conditions=read_stating(tmp_path, "300 g", where).conditions))
+
+
+def test_a_condition_without_a_unit_is_in_that_of_its_constant(tmp_path):
+    check_stated(rigid(), read_stating(tmp_path, "0.3", "remark"))

@@ -6,12 +6,14 @@ import os
 import re
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 from plant_arms import FRICTION, law, noise, pulse, relative, thesis_plant
 
+from flexarm_env import Arm
 from flexarm_env.effects import catalogue
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.compose import source_of
@@ -141,3 +143,22 @@ def test_no_two_kernels_share_a_name():
     text = source_of(catalogue().laws)
     names = re.findall(r"^def (\w+)", text, re.MULTILINE)
     assert len(names) == len(set(names))  # one module holds them all: a second would shadow the first in Python
+
+
+@pytest.mark.parametrize("offset", [-1e-8, 1e-8])
+def test_a_hole_takes_no_longer_where_clocks_differ_by_next_to_nothing(offset):
+    intervals = np.full(100, 0.01)
+    intervals[50] = 2.0
+
+    def readings(arm, count=100):
+        plant = arm.plant(0.01)
+        plant.state[at.COMMAND] = 1.0  # before the first sample, too
+        return plant.replay(np.ones(count), intervals[:count])[:, :2]
+
+    arms = [Arm.load("thesis"), Arm.load("thesis").with_effect("time_offset", offset=offset)]
+    for arm in arms:
+        readings(arm, 2)  # compiles
+    began = time.process_time()
+    prompt, late = map(readings, arms)
+    assert time.process_time() - began < 5.0
+    np.testing.assert_allclose(late, prompt, rtol=1e-5, atol=1e-6)

@@ -120,3 +120,44 @@ def test_the_dead_time_of_the_arm_counts_to_the_loop() -> None:
     late = arm.with_effect("input_delay", delay=INTERVAL)
     prompt, delayed = (margins_of(lambda model: make_controller("pd", model, INTERVAL), each).delay for each in (arm, late))
     assert prompt - delayed == pytest.approx(INTERVAL, abs=1e-4)
+
+
+def delayed_closed_form(gains: tuple[float, float], rate: np.ndarray, samples: int, rest: float) -> np.ndarray:
+    """PD on 1 / (J s² + b s) whose held command acts late by samples and a rest, by the modified z-transform by hand.
+
+    From a held unit command the speed is S(t) = K (1 − e^(−a t)) and the angle A(t) = K (t − (1 − e^(−a t)) / a).
+    """
+    a, z = FRICTION / INERTIA, np.exp(1j * rate * INTERVAL)
+
+    def speed_after(time: float) -> float:
+        return PUSH / FRICTION * (1.0 - np.exp(-a * time))
+
+    def angle_after(time: float) -> float:
+        return PUSH / FRICTION * (time - (1.0 - np.exp(-a * time)) / a)
+
+    new, decay, drift = INTERVAL - rest, np.exp(-a * INTERVAL), (1.0 - np.exp(-a * INTERVAL)) / a
+    # over one sample: the older command for the rest, then the newer one
+    older_speed = np.exp(-a * new) * speed_after(rest)
+    older_angle = angle_after(rest) + speed_after(rest) * (1.0 - np.exp(-a * new)) / a
+    command_to_speed = (speed_after(new) + older_speed / z) * z**-samples
+    command_to_angle = (angle_after(new) + older_angle / z) * z**-samples
+    speed = command_to_speed / (z - decay)
+    angle = (command_to_angle + drift * speed) / (z - 1.0)
+    return gains[0] * angle + 1.5 * gains[1] * speed
+
+
+@pytest.mark.parametrize(("late", "samples", "rest"), [(1.5, 1, 0.5), (0.3, 0, 0.3), (2.0, 2, 0.0)])
+def test_the_response_of_a_late_loop_is_that_of_the_closed_form(rigid, late: float, samples: int, rest: float) -> None:
+    gains = (8.0, 0.9)
+    moving = rigid.without_effect("coulomb").with_effect("input_delay", delay=late * INTERVAL)
+    response = sensitivity(PD(moving, INTERVAL, *gains), moving)
+    rates = np.linspace(2.0, 0.98 * np.pi / INTERVAL, 300)
+    measured = response @ np.exp(-1j * np.outer(np.arange(len(response)), rates * INTERVAL))
+    expected = 1.0 / (1.0 + delayed_closed_form(gains, rates, samples, rest * INTERVAL))
+    np.testing.assert_allclose(measured, expected, rtol=2e-4)
+
+
+def test_a_dead_time_of_one_and_a_half_samples_takes_as_much_from_the_delay_margin(rigid) -> None:
+    late = rigid.with_effect("input_delay", delay=1.5 * INTERVAL)
+    prompt, delayed = (margins_of(lambda arm: PD(arm, INTERVAL, 8.0, 0.9), arm).delay for arm in (rigid, late))
+    assert prompt - delayed == pytest.approx(1.5 * INTERVAL, rel=0.01)

@@ -166,6 +166,16 @@ def test_what_makes_no_sense_is_refused_in_one_line(make, words: str) -> None:
         make()
 
 
+@pytest.mark.parametrize("steps", [0, -3, 2.5, True, "9"])
+def test_an_episode_of_no_actions_is_refused(steps) -> None:
+    words = rf"^max_episode_steps = {steps!r}; give a whole number from 1 up$"
+    with pytest.raises(InputError, match=words):
+        ShapedVector(FlexArmVectorEnv(2, "slew", physical=True), max_episode_steps=steps)
+    for id in ("FlexArm/Slew-Shaped-v0", "FlexArm/Slew-v0"):
+        with pytest.raises(InputError, match=words):
+            gym.make_vec(id, 2, max_episode_steps=steps, **NATIVE)
+
+
 def test_resets_that_the_memory_cannot_follow_are_refused() -> None:
     env = gym.make("FlexArm/Slew-Shaped-v0")
     env.reset(seed=0)

@@ -360,7 +360,8 @@ def uneven_lanes(a: Arrays, g: Tangent, p: TangentPlaces, before: float, command
         move_with_lanes(a, g, p, before, early, UNTABULATED)
     elif g.v[p.keys + KEY_DELAY] > 0.0:
         shift_start(a, g, p, before)
-    count = max(math.ceil(late / d[at.LATE_LENGTH] - 1e-9), 1) if late > 0.0 else 0
+    longest = max(d[at.EARLY_LENGTH], d[at.LATE_LENGTH])  # one of them is next to nothing where the delay ends at a sample
+    count = max(math.ceil(late / longest - 1e-9), 1) if late > 0.0 else 0
     for j in range(count):
         now = ramp_lanes(a, g, p, before, command, j * late / count, (j + 1) * late / count)
         for x in range(w.shape[1]):

@@ -1,0 +1,45 @@
+"""Where the results of the agents' commands go is looked at before the work."""
+
+from __future__ import annotations
+
+import importlib
+from pathlib import Path
+
+import pytest
+
+COMMANDS = {
+    "compare": [],
+    "evaluate": [],
+    "recipe": [],
+    "robustness": [],
+    "sim_to_rig": [],
+    "train": ["configs/agents/ppo_slew.toml"],
+    "tune": ["pd"],
+}
+
+
+def refusal(command: str, arguments: list[str], capsys: pytest.CaptureFixture[str]) -> str:
+    main = importlib.import_module(f"agents.{command}").main
+    assert main(arguments) == 2
+    return capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_results_for_a_folder_that_is_a_file_are_refused_before_the_work(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    place = tmp_path / "results"
+    place.write_text("of another")
+    words = f"cannot make folder {place}: File exists; name another\n"
+    assert refusal(command, [*COMMANDS[command], "--save", str(place)], capsys) == words
+    assert place.read_text() == "of another"
+
+
+@pytest.mark.parametrize(("save", "words"), [("there/a.gif", "cannot make folder"), ("a.tiff", "name a .gif")])
+def test_a_film_for_no_place_is_refused_before_it_is_made(
+    save: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "there").write_text("of another")
+    said = refusal("film", ["--save", str(tmp_path / save)], capsys)
+    assert words in said
+    assert len(said.splitlines()) == 1
