@@ -87,7 +87,7 @@ def arm_from_table(kind: type[Arm], table: Mapping[str, Any], name: str, known: 
     command, constants = _constants(table)
     sensors, auto_noise = _sensors(_table(table, "sensors"))
     arm = kind(
-        name=str(table.get("name", name)),
+        name=_text(table, "name", name),
         input=command,
         constants=constants,
         sensors=sensors,
@@ -98,7 +98,7 @@ def arm_from_table(kind: type[Arm], table: Mapping[str, Any], name: str, known: 
         controller=law_from_table(table["controller"], command) if "controller" in table else None,
         fitted=_table(table, "fitted", {}),
         origin=_table(table, "origin", {}),
-        description=str(table.get("description", "")),
+        description=_text(table, "description", ""),
         known=known,
     )
     _check_needs(arm)
@@ -115,6 +115,13 @@ def arm_from_table(kind: type[Arm], table: Mapping[str, Any], name: str, known: 
         read = {key: _number(f"effects.{effect}.{key}", value, parameters[key]) for key, value in given.items()}
         arm = arm.with_effect(effect, **absent, **read)
     return arm
+
+
+def _text(table: Mapping[str, Any], key: str, default: str) -> str:
+    given = table.get(key, default)
+    if not isinstance(given, str):
+        raise InputError(f'{key} = {given!r} is no text; write it in quotes, as {key} = "bench 2"')
+    return given
 
 
 def _constants(table: Mapping[str, Any]) -> tuple[str, dict[str, dict[str, float]]]:
@@ -274,8 +281,6 @@ def _section(section: str, given: dict[str, Any], defaults: Mapping[str, float])
     for key, parameter in parameters.items():
         if key not in values:
             raise InputError(f"{section}.{key} is missing; it is a number{' in ' if parameter.unit else ''}{parameter.unit}")
-    if section == "beam" and values["elements"] != int(values["elements"]):
-        raise InputError(f"beam.elements = {values['elements']:g}; write a whole number")
     return values
 
 

@@ -15,7 +15,7 @@ class UnknownArgument(InputError, TypeError):
 
 
 def did_you_mean(word: str, allowed: Iterable[str]) -> str:
-    """Suggest the nearest allowed word, "; did you mean 'x'?", or list those allowed.
+    """Suggest the nearest allowed word, "; did you mean 'x'?", or list those allowed; say nothing where none is.
 
     Args:
         word: as given.
@@ -25,4 +25,4 @@ def did_you_mean(word: str, allowed: Iterable[str]) -> str:
     near = difflib.get_close_matches(word, options, n=1, cutoff=0.6)
     if near:
         return f"; did you mean '{near[0]}'?"
-    return f"; allowed: {', '.join(options)}"
+    return f"; allowed: {', '.join(options)}" if options else ""

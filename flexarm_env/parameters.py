@@ -41,6 +41,7 @@ class Parameter:
         meaning: description in one line.
         source: equation, table or paper.
         of_command: whether the quantity is a command, in A or V.
+        is_count: whether it is a whole number.
 
     Example:
         >>> gap = Parameter("rad", 0.0, 1.0, 0.06, null=0.0, meaning="gap of the gears, motor side")
@@ -57,6 +58,7 @@ class Parameter:
     meaning: str = ""
     source: str = ""
     of_command: bool = False
+    is_count: bool = False
 
     def scaled_by(self, scales: Mapping[str, float]) -> float:
         """Look up the factor on the typical size.
@@ -153,7 +155,7 @@ HUB = {
     ),
 }
 BEAM = {
-    "elements": Parameter("", 1, 16, 1, spread=0.0, meaning="finite elements", source="thesis section 3.1"),
+    "elements": Parameter("", 1, 16, 1, spread=0.0, meaning="finite elements", source="thesis section 3.1", is_count=True),
     "length": Parameter("m", 1e-3, 1e2, 1.0, spread=0.0, meaning="from the hub's axis to the tip", source="thesis section 3.3"),
     "mass_per_length": Parameter("kg/m", 1e-6, 1e4, 0.42381, spread=0.15, source="thesis section 3.4"),
     "bending_stiffness": Parameter("N*m**2", 1e-6, 1e8, 7.911324, spread=0.15, meaning="E times I", source="thesis section 3.4"),
@@ -247,9 +249,11 @@ def check_bounds(path: str, value: float, parameter: Parameter) -> float:
     """Check a value against its parameter's bounds, and return it.
 
     Raises:
-        InputError: for a value out of bounds.
+        InputError: for a value out of bounds, and a count that is no whole number.
     """
     if not parameter.low <= value <= parameter.high:
         unit = f" {parameter.unit}" if parameter.unit else ""
         raise InputError(f"{path} = {value:g}{unit} is out of bounds: allowed are {parameter.low:g} to {parameter.high:g}{unit}")
+    if parameter.is_count and value != int(value):
+        raise InputError(f"{path} = {value:g}; write a whole number")
     return value

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
@@ -13,6 +14,7 @@ import pytest
 from flexarm_env.arm import Arm
 from flexarm_env.arm_file import shipped_arms
 from flexarm_env.effects import Catalogue, Effect, catalogue
+from flexarm_env.errors import InputError
 from flexarm_env.parameters import SENSOR, Parameter
 
 #: Units that a parameter of one's own effect may have, as hard to read back as pint allows.
@@ -75,3 +77,25 @@ def test_fitted_intervals_and_origin_are_read_back(tmp_path):
     again = read_back(arm, tmp_path)
     assert again.fitted == fitted
     assert again.origin == origin
+
+
+@pytest.mark.parametrize(
+    ("line", "instead", "words"),
+    [
+        ("name = ", 'name = ["x"]', "name = ['x'] is no text"),
+        ("description = ", "description = {a = 1}", "description = {'a': 1} is no text"),
+        ("elements = ", "elements = 2.5", "beam.elements = 2.5; write a whole number"),
+    ],
+)
+def test_another_kind_of_value_is_refused(tmp_path, line, instead, words):
+    Arm.load("thesis").save(tmp_path / "arm.toml")
+    written = (tmp_path / "arm.toml").read_text().splitlines()
+    kept = [instead if one.startswith(line) else one for one in written]
+    (tmp_path / "arm.toml").write_text("\n".join(kept if kept != written else [instead, *written]))
+    with pytest.raises(InputError, match=re.escape(words)):
+        Arm.load(tmp_path / "arm.toml")
+
+
+def test_an_effect_s_count_is_a_whole_number():
+    with pytest.raises(InputError, match=re.escape("effects.higher_modes.elements = 2.5; write a whole number")):
+        Arm.load("thesis").with_effect("higher_modes", elements=2.5)

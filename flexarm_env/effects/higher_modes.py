@@ -15,7 +15,7 @@ class HigherModes(Effect):
     name = "higher_modes"
     equation = "more elements, the same beam"
     parameters: ClassVar = {
-        "elements": Parameter("", 0, 16, 4, null=0, meaning="finite elements in place of those of the arm file")
+        "elements": Parameter("", 0, 16, 4, null=0, meaning="finite elements in place of those of the arm file", is_count=True)
     }
     looks_like = "strain and speed ring at frequencies that the model misplaces or lacks"
     confused_with = ("root_compliance", "tip_inertia", "gear_compliance")

@@ -40,7 +40,8 @@ def test_it_writes_a_page_with_every_figure_and_row(flexarm, tmp_path):
 @needs_plots
 def test_a_file_in_the_folder_s_place_is_refused(flexarm, tmp_path):
     (tmp_path / "file").write_text("")
-    assert "--output" in flexarm.refused("thesis", "--output", tmp_path / "file")
+    said = flexarm.refused("thesis", "--output", tmp_path / "file")
+    assert said == f"flexarm: cannot make folder {tmp_path / 'file'}: File exists; name another\n"
 
 
 def test_without_the_library_for_pictures_it_says_what_to_install(flexarm, tmp_path, monkeypatch):

@@ -34,8 +34,9 @@ def check_recording(arm: Arm, recording: Recording, numbers: Preparation) -> Non
     check_stated(arm, recording)
     count = int(np.count_nonzero(share_of(readings_of(arm, recording))))
     if count < numbers.fewest_samples:
+        word = "sample" if count == 1 else "samples"
         with_readings = f" with a reading of {' or '.join(arm.signals)}" if count < len(recording) else ""
-        raise InputError(f"{recording.name} has {count} samples{with_readings}; at least {numbers.fewest_samples} are needed")
+        raise InputError(f"{recording.name} has {count} {word}{with_readings}; at least {numbers.fewest_samples} are needed")
     check_steps(recording, numbers)
     check_free_motion(arm, recording, numbers)
 
