@@ -138,7 +138,7 @@ def minimise(
         tolerance: relative decrease of the cost at which to stop, unless narrower differences may help.
         frozen: Jacobian (rows, first columns) taken over from elsewhere and not computed again.
     """
-    problem, r = _Problem(residual, prior, numbers, tolerance), residual(x)
+    r = residual(x)
     point = _Point(x, r, cost_of(r, x, prior), numbers.first_damping)
     known = 0 if frozen is None else frozen.shape[1]
     j = np.empty((len(r), len(x)))
@@ -148,31 +148,13 @@ def minimise(
         if known < len(x):
             j[:, known:] = jacobian(residual, point.x, steps.now, known)
         before = point.cost
-        point = _descend(problem, point, j)
+        point = _descend(residual, point, j, prior, numbers)
         stays = before - point.cost < tolerance * before
         finer = steps.adapted(point.residual, j[:, known:], grow=not stays)
-        ends = stays or _promise(j, point, prior) < tolerance * point.cost
-        if ends and np.all(finer.now > numbers.shrinks * steps.now):
+        if stays and np.all(finer.now > numbers.shrinks * steps.now):
             break
         steps = finer
     return Solution(point.x, point.cost, point.residual, j, steps)
-
-
-@dataclass(frozen=True)
-class _Problem:
-    """A sum of squares to be minimised.
-
-    Attributes:
-        residual: whitened residual (rows,).
-        prior: standard deviation of each x around 0.
-        numbers: dampings and step rules.
-        tolerance: relative decrease of the cost that is not worth a step.
-    """
-
-    residual: Residual
-    prior: Floats
-    numbers: LeastSquares
-    tolerance: float
 
 
 @dataclass(frozen=True)
@@ -183,12 +165,6 @@ class _Point:
     residual: Floats
     cost: float
     damping: float
-
-
-def _promise(j: Floats, point: _Point, prior: Floats) -> float:
-    """Compute the decrease of the cost that an undamped step would bring if the residual were linear."""
-    slope = j.T @ point.residual + point.x / prior**2
-    return float(slope @ np.linalg.solve(j.T @ j + np.diag(prior**-2.0), slope))
 
 
 def descend(residual: Residual, x: Floats, slopes: Floats, prior: Floats, numbers: LeastSquares) -> tuple[Floats, Floats]:
@@ -206,23 +182,20 @@ def descend(residual: Residual, x: Floats, slopes: Floats, prior: Floats, number
     """
     r, j = residual(x), slopes.copy()
     point = _Point(x, r, cost_of(r, x, prior), numbers.first_damping)
-    return _descend(_Problem(residual, prior, numbers, 0.0), point, j).x, j
+    return _descend(residual, point, j, prior, numbers).x, j
 
 
-def _descend(problem: _Problem, point: _Point, j: Floats) -> _Point:
-    """Take damped steps along one Jacobian, which each corrects in place for the next, while they promise and give enough."""
-    numbers, prior = problem.numbers, problem.prior
+def _descend(residual: Residual, point: _Point, j: Floats, prior: Floats, numbers: LeastSquares) -> _Point:
+    """Take damped steps along one Jacobian, which each corrects in place for the next, while they lower the cost enough."""
     x, r, cost, damping = point.x, point.residual, point.cost, point.damping
     for number in range(numbers.steps):
         normal = j.T @ j + np.diag(prior**-2.0)
         slope = j.T @ r + x / prior**2
-        if slope @ np.linalg.solve(normal, slope) < problem.tolerance * cost:
-            break
         last = cost
         for _ in range(1 if number else numbers.trials):
             step = -np.linalg.solve(normal + damping * np.diag(np.diag(normal)), slope)
             step = np.clip(step, -numbers.largest_step, numbers.largest_step)
-            trial = problem.residual(x + step)
+            trial = residual(x + step)
             new = cost_of(trial, x + step, prior)
             if new < cost:
                 j += secant_correction(trial - r - j @ step, step, np.diag(normal))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,6 @@ from flexarm_env.identify.calibrate.least_squares import Solution, StepSizes, mi
 from flexarm_env.identify.calibrate.objective import Objective, objective_at
 from flexarm_env.identify.calibrate.parameters import FitParameters
 from flexarm_env.identify.replay.dataset import Dataset
-from flexarm_env.identify.replay.start_bank import StartBank
 
 Floats = NDArray[np.float64]
 
@@ -28,14 +27,12 @@ class Schedule:
         dataset: the recordings.
         parameters: the fitted values.
         iterations: most Jacobians at each level.
-        starts: initial states of the recordings, fitted once for all levels.
     """
 
     arm: Arm
     dataset: Dataset
     parameters: FitParameters
     iterations: int
-    starts: StartBank = field(default_factory=StartBank, repr=False, compare=False)
 
     def run(self, levels: Sequence[float], passes: int) -> Calibration:
         """Calibrate through levels [Nm], then at the arm's own torque noise.
@@ -66,7 +63,7 @@ class Schedule:
     def _objective(self, x: Floats, torque_noise: float) -> Objective:
         """Build an objective that weighs errors by those at x."""
         objective = objective_at(self.arm, self.dataset, self.parameters, torque_noise)
-        return replace(objective, starts=self.starts).weighted_by(self.parameters.apply(self.arm, x))
+        return objective.weighted_by(self.parameters.apply(self.arm, x))
 
     def _minimise(self, objective: Objective, x: Floats, steps: StepSizes, last: bool) -> Solution:
         """Minimise at one level; over narrow differences at the last."""
