@@ -107,12 +107,12 @@ class ForecastSearch:
 
         Args:
             base: the model without effects, its constants calibrated.
-            explained: effects of a model that explains them already; none where none does.
+            explained: effects of a model that explains them already, which is not calibrated again; none where none does.
             explains: whether another model does so, and better.
             progress: of this search.
 
         Returns:
-            What is proposed; None where no model explains them, none that was found in time, or forecasts ask for no other.
+            What is proposed; None where no model explains them, or none that was found in time.
         """
         with self.calibrator.workers.threads():
             level = self._without_effects(base)
@@ -129,7 +129,7 @@ class ForecastSearch:
                 if chosen is None or chosen.cost > best - self.numbers.least_gain:
                     break
                 if explained == frozenset(chosen.effects):
-                    break
+                    continue
                 calibrating.at(0.0, f"calibrating {' and '.join(chosen.effects)}")
                 model = self._model(chosen)
                 if explains(model):

@@ -102,20 +102,21 @@ class Search:
         return self._accept(trace, possible) if possible else trace
 
     def ask_forecasts(self, trace: Trace, progress: Progress) -> Trace:
-        """Accept the model that forecasts ask for in place of another, if it alone explains the data, or leaves nothing of them.
+        """Accept the model that forecasts ask for in place of another, if it alone explains the data, or removes enough more.
 
         Errors over a second or more show what is missing where one effect is. Where several hide each other, forecasts over a
-        fraction of that are less misled. Where both ask for the same effects and these explain the data, they stand.
+        fraction of that are less misled.
         """
         left_out = "models were compared by their forecasts"
         if self.is_late:
             return self._stop(trace, left_out)
 
-        is_explained = self.criteria.is_fully_explained(trace.model)
-        enough = self.calibrator.settings.errors.nothing_left if is_explained else np.inf
+        now, least = trace.model, self.calibrator.settings.selecting.least_removed
+        is_explained = self.criteria.is_fully_explained(now)
+        enough = now.score.excess - least if is_explained else np.inf
 
         def is_better(found: Model) -> bool:
-            return found.score.windows < enough and self.criteria.is_fully_explained(found)
+            return found.score.excess <= enough and self.criteria.is_fully_explained(found)
 
         explained = frozenset(trace.effects if is_explained else ())
         found = ForecastSearch(self.calibrator).propose(trace.steps[0].model, explained, is_better, progress)
