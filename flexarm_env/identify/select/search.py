@@ -236,7 +236,8 @@ class Search:
     def _rivals(self, trace: Trace, winner: Model, models: Sequence[Model], measure: Measure) -> tuple[Trace, list[Model]]:
         """Find the models between which the data do not decide, best first, each calibrated from nominal constants.
 
-        A calibration that began with biased constants leaves more than the difference between near rivals. Where no time is
+        A calibration that began with biased constants leaves more than the difference between near rivals, and so does one that
+        ended where constants compensate each other: each is calibrated by both schedules. Where no time is
         left for another, all near rivals are taken as undecided.
         """
         calibrator, dataset = self.calibrator, self.calibrator.dataset
@@ -247,7 +248,7 @@ class Search:
         if len(first) == 1:
             return trace, first
         arms = [calibrator.nominal_with_effects_of(m.arm) for m in first]
-        again = fit_models(calibrator, [m.effects for m in first], arms, Progress())
+        again = fit_models(calibrator, [m.effects for m in first], arms, Progress(), thorough=True)
         rank = self.criteria.rank(winner.score, measure, dataset)
         if len(again) < len(first):
             trace = self._stop(trace, f"rivals of {winner.effects[0]} were calibrated again")
