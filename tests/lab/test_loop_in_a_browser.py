@@ -247,10 +247,10 @@ def test_axe_finds_no_serious_fault(lab, folder, viewport):
 
 
 @needs_chromium
-@pytest.mark.slow(minutes=3)
+@pytest.mark.slow(minutes=6)
 def test_the_demo_s_hidden_effect_is_found(lab):
     with opened() as (page, errors):
-        page.set_default_timeout(4 * PATIENCE)
+        page.set_default_timeout(8 * PATIENCE)
         page.goto(lab.url)
         page.get_by_role("button", name="Start with the demo").click()
         assert shown_error(page) > 10.0
