@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from flexarm_env.arm_file import AUTO
 from flexarm_env.control.table import law_table
 from flexarm_env.files import write_whole
-from flexarm_env.parameters import SECTIONS, defaults_of
+from flexarm_env.parameters import SECTIONS, Parameter, defaults_of
 
 if TYPE_CHECKING:
     from tomlkit.items import Table
@@ -71,7 +71,7 @@ def _constants(arm: Arm, section: str) -> Table:
     defaults = defaults_of(section, arm.input, arm.constants)
     for key, value in arm.constants[section].items():
         if defaults.get(key) != value:
-            _put(table, key, value, SECTIONS[section][key].unit)
+            _put(table, key, value, SECTIONS[section][key])
     return table
 
 
@@ -87,7 +87,7 @@ def _sensors(arm: Arm) -> Table:
             if key == "noise" and signal in arm.auto_noise:
                 table[key] = AUTO
             elif setting.typical != value:
-                _put(table, key, value, setting.unit)
+                _put(table, key, value, setting)
         sensors[signal] = table
     return sensors
 
@@ -100,15 +100,15 @@ def _effects(arm: Arm) -> Table:
     for name, values in arm.effects.items():
         table = tomlkit.table()
         for key, value in values.items():
-            _put(table, key, value, arm.known[name].parameters[key].unit)
+            _put(table, key, value, arm.known[name].parameters[key])
         effects[name] = table
     return effects
 
 
-def _put(table: Table, key: str, value: float, unit: str) -> None:
-    if key == "elements":
+def _put(table: Table, key: str, value: float, parameter: Parameter) -> None:
+    if parameter.is_count:
         table[key] = int(value)
-    elif unit and math.isfinite(value):
-        table[key] = f"{float(value)!r} {unit}"
+    elif parameter.unit and math.isfinite(value):
+        table[key] = f"{float(value)!r} {parameter.unit}"
     else:
         table[key] = float(value)

@@ -25,7 +25,20 @@ HEAVY = {"torch", "stable_baselines3", "sb3_contrib", "plotly", "matplotlib", "p
 LAYERS = (
     {"errors"},
     {"units", "parameters", "files", "cache", "generated", "display"},
-    {"arm", "arm_file", "arm_text", "machine", "plant", "effects", "sensors", "control", "linear", "recordings", "thesis_drive"},
+    {
+        "arm",
+        "arm_checks",
+        "arm_file",
+        "arm_text",
+        "machine",
+        "plant",
+        "effects",
+        "sensors",
+        "control",
+        "linear",
+        "recordings",
+        "thesis_drive",
+    },
     {"experiments"},
     {"identify", "controllers", "tasks", "render", "env"},
     {"vector_env", "sb3", "wrappers", "pictures", "registration"},
@@ -41,7 +54,7 @@ USERS = RANK["terminal"]
 # Beyond the layers: recordings know no arm, identify never sees the env, and controllers see observations only (and the arm
 # that they believe in).
 NEVER = {
-    "recordings": {"arm", "arm_file", "arm_text", "machine", "plant", "effects", "linear"},
+    "recordings": {"arm", "arm_checks", "arm_file", "arm_text", "machine", "plant", "effects", "linear"},
     "experiments": {"env", "tasks", "render"},
     "identify": {"env", "tasks", "render"},
     "controllers": {"plant", "effects", "sensors", "recordings", "experiments", "identify", "tasks", "render", "env"},

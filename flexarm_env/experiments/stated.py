@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from flexarm_env.arm import Arm
-from flexarm_env.arm_file import check_constants
+from flexarm_env.arm_checks import check_constants
 from flexarm_env.errors import InputError
 from flexarm_env.parameters import check_bounds
 from flexarm_env.plant.plant import Plant

@@ -101,14 +101,14 @@ class ForecastSearch:
         return self.calibrator.workers.deadline.is_over
 
     def propose(
-        self, base: Model, explained: frozenset[str], explains: Callable[[Model], bool], progress: Progress
+        self, base: Model, calibrated: frozenset[str], explains: Callable[[Model], bool], progress: Progress
     ) -> Proposal | None:
         """Search from the calibrated constants and from the nominal ones: the smallest model that explains the recordings.
 
         Args:
             base: the model without effects, its constants calibrated.
-            explained: effects of a model that explains them already, which is not calibrated again; none where none does.
-            explains: whether another model does so, and better.
+            calibrated: effects of a model that is calibrated already, and not again; none where there is none.
+            explains: whether a model does so.
             progress: of this search.
 
         Returns:
@@ -128,7 +128,7 @@ class ForecastSearch:
                 chosen = min(level, key=lambda one: one.cost, default=None)
                 if chosen is None or chosen.cost > best - self.numbers.least_gain:
                     break
-                if explained == frozenset(chosen.effects):
+                if calibrated == frozenset(chosen.effects):
                     continue
                 calibrating.at(0.0, f"calibrating {' and '.join(chosen.effects)}")
                 model = self._model(chosen)

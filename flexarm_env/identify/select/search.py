@@ -118,8 +118,8 @@ class Search:
         def is_better(found: Model) -> bool:
             return found.score.excess <= enough and self.criteria.is_fully_explained(found)
 
-        explained = frozenset(trace.effects if is_explained else ())
-        found = ForecastSearch(self.calibrator).propose(trace.steps[0].model, explained, is_better, progress)
+        calibrated = frozenset(trace.effects if is_explained else ())
+        found = ForecastSearch(self.calibrator).propose(trace.steps[0].model, calibrated, is_better, progress)
         if found is None:
             return self._stop(trace, f"all {left_out}") if self.is_late else trace
         longer = trace.then("forecast", found.model, found.accepted, found.tried)
