@@ -227,7 +227,7 @@ def quantity(value: str | float, target: str) -> float:
 
 
 class BaseValue(float):
-    """A number in SI base units that knows them.
+    """A number in SI base units, with these beside it.
 
     Attributes:
         unit: such as "kg"; "" where none was stated.
