@@ -184,13 +184,13 @@ class ForecastSearch:
         return Hypothesis((*one.effects, promise.effect), parameters, found)
 
     def _finish(self, fresh: Hypotheses, before: float) -> list[Hypothesis]:
-        """Calibrate the best to the end, and others that gain nearly as much on a cost; best first."""
+        """Calibrate to the end, and keep, the best and others that gain nearly as much on a cost; best first."""
         done: list[Hypothesis] = []
         for one in sorted(fresh.values(), key=_fitted_cost)[: self.numbers.width]:
             least = self.numbers.near_gain * (before - _fitted_cost(done[0])) if done else -np.inf
             if before - _fitted_cost(one) >= least:
-                one = self._calibrate(one.effects, one.arm, one.prediction.disturbances)
-            done = sorted([*done, one], key=_fitted_cost)
+                finished = self._calibrate(one.effects, one.arm, one.prediction.disturbances)
+                done = sorted([*done, finished], key=_fitted_cost)
         return done
 
     def _model(self, one: Hypothesis) -> Model:

@@ -113,6 +113,8 @@ class Search:
 
         now, least = trace.model, self.calibrator.settings.selecting.least_removed
         is_explained = self.criteria.is_fully_explained(now)
+        if is_explained and self._is_rough(now):
+            return trace
         enough = now.score.excess - least if is_explained else np.inf
 
         def is_better(found: Model) -> bool:
@@ -124,6 +126,16 @@ class Search:
             return self._stop(trace, f"all {left_out}") if self.is_late else trace
         longer = trace.then("forecast", found.model, found.accepted, found.tried)
         return self.drop_useless(self.swap(longer, progress, untried=True))
+
+    def _is_rough(self, found: Model) -> bool:
+        """Whether two calibrations of one model differ by a share of what they leave, which then says nothing of another effect.
+
+        Where teeth or a stop make contact, a thousandth of a gap moves the error by more than the noise.
+        """
+        calibrator, left = self.calibrator, found.score.excess
+        with calibrator.workers.threads():
+            other = calibrator.calibrate(calibrator.nominal_with_effects_of(found.arm))
+        return abs(calibrator.score(other.arm).excess - left) > calibrator.settings.selecting.rough * left
 
     def combine(self, trace: Trace, progress: Progress) -> Trace:
         """Accept effects that explain the data only together, if there are some."""
