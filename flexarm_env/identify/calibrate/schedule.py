@@ -62,8 +62,7 @@ class Schedule:
 
     def _objective(self, x: Floats, torque_noise: float) -> Objective:
         """Build an objective that weighs errors by those at x."""
-        own = self.arm.constants["drive"]["torque_noise"]
-        objective = objective_at(self.arm, self.dataset, self.parameters, torque_noise, reduced=torque_noise > own)
+        objective = objective_at(self.arm, self.dataset, self.parameters, torque_noise)
         return objective.weighted_by(self.parameters.apply(self.arm, x))
 
     def _minimise(self, objective: Objective, x: Floats, steps: StepSizes, last: bool) -> Solution:

@@ -158,7 +158,7 @@ class ForecastSearch:
             found = promises(one.prediction, one.parameters, names)
             wanted = self._finalists(one, found)
             stage.at(0.5, f"fitting {', '.join(p.effect for p in wanted)}{_beside(one)}")
-            for new in Parallel(prefer="threads")(delayed(self._with)(one, promise) for promise in wanted):
+            for new in Parallel(require="sharedmem")(delayed(self._with)(one, promise) for promise in wanted):
                 key = frozenset(new.effects)
                 if not new.at_bound and (key not in fresh or _fitted_cost(new) < _fitted_cost(fresh[key])):
                     fresh[key] = new

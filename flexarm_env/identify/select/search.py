@@ -84,6 +84,7 @@ class Search:
         """Calibrate what screening found promising, and accept what is worthwhile."""
         models = nearest(self.calibrator, self.criteria, trials, fitting)
         if not trace.accepted and not self.is_late:
+            models = self._restarted(trace, models)
             trace = self._combine_at_once(trace, models, more)
             if trace.accepted:
                 return trace
@@ -203,6 +204,18 @@ class Search:
             return trace
         return self.combine(trace, progress)
 
+    def _restarted(self, trace: Trace, models: list[Model]) -> list[Model]:
+        """Calibrate the best model from the nominal constants, too, where none comes near: it alone may be what is missing."""
+        possible = [m for m in models if not m.at_bound]
+        if not possible or not none_comes_near(self.criteria, models, trace.model):
+            return models
+        measure = self.criteria.measure([m.score for m in possible])
+        best = min(possible, key=lambda m: measure(m.score))
+        with self.calibrator.workers.threads():
+            calibration = self.calibrator.restart_from_nominal(best.calibration)
+        again = judge(best.effects, calibration, self.calibrator.dataset)
+        return [again if m is best else m for m in models]
+
     def _recalibrate(self, trace: Trace) -> Trace:
         """Calibrate once more without anything new: that gain is no merit of another effect."""
         with self.calibrator.workers.threads():
@@ -262,6 +275,13 @@ class Search:
         arms = [calibrator.nominal_with_effects_of(m.arm) for m in first]
         again = fit_models(calibrator, [m.effects for m in first], arms, Progress(), thorough=True)
         rank = self.criteria.rank(winner.score, measure, dataset)
+        if again:  # they may come near the noise only now
+            measure = self.criteria.measure([m.score for m in (*first, *again)])
+            nearest = min((*first, *again), key=lambda m: measure(m.score))
+            removed, rank = (
+                measure(trace.model.score) - measure(nearest.score),
+                self.criteria.rank(nearest.score, measure, dataset),
+            )
         if len(again) < len(first):
             trace = self._stop(trace, f"rivals of {winner.effects[0]} were calibrated again")
             return trace, sorted(first, key=rank)

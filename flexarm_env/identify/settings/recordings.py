@@ -91,7 +91,7 @@ class Thinning:
     vibration_error: float = tuned(
         0.05,
         "Largest change of a signal, rms over its noise, by the vibrations of a beam that replays leave out.",
-        "keeps seven of the twelve of `thesis-fem` at 500 Hz; with 0.1, six, a fit of a cable's spring ended a third off",
+        "changes an error at the noise by 0.1 %; seven of the twelve are kept of `thesis-fem` at 500 Hz",
     )
     vibration_windows: int = tuned(12, "Windows in which it is measured, spread over all recordings at most.")
     command_error: float = tuned(
