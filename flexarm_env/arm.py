@@ -338,11 +338,12 @@ class Arm(Shown):
 
         return laws_of(self.constants, self.signals, self.present(), self.known)
 
-    def plant(self, interval: float) -> Plant:
+    def plant(self, interval: float, vibrations: int = 0) -> Plant:
         """Compile the arm for simulation.
 
         Args:
             interval: sampling time [s].
+            vibrations: of the beam that are kept, the slowest; 0 keeps all that its elements have.
 
         Example:
             >>> import numpy as np
@@ -353,7 +354,9 @@ class Arm(Shown):
         """
         from flexarm_env.plant.plant import Plant
 
-        return Plant(self.structure(), self.laws(), self.known.laws, interval)
+        structure = self.structure()
+        structure.vibrations = vibrations
+        return Plant(structure, self.laws(), self.known.laws, interval)
 
     def linearise(self, mode: str, interval: float) -> LinearArm:
         """Linearise the arm while its hub moves or is stuck.

@@ -89,6 +89,6 @@ def with_stated(arm: Arm, stated: Stated) -> Arm:
     return arm.with_effect(effect.name, **{effect.size_parameter(): own + payload})
 
 
-def plants_by_stated(arm: Arm, stated: Iterable[Stated], interval: float) -> dict[Stated, Plant]:
-    """Build a plant of the arm, sampled every `interval` [s], for each distinct set of conditions."""
-    return {one: with_stated(arm, one).plant(interval) for one in dict.fromkeys(stated)}
+def plants_by_stated(arm: Arm, stated: Iterable[Stated], interval: float, vibrations: int = 0) -> dict[Stated, Plant]:
+    """Build a plant for each distinct set of conditions, as `Arm.plant` does."""
+    return {one: with_stated(arm, one).plant(interval, vibrations) for one in dict.fromkeys(stated)}

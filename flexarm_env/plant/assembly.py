@@ -12,6 +12,7 @@ from flexarm_env.plant.beam import Beam, Matrix, spread_out, turned
 from flexarm_env.plant.drive import drive_model, motor_current
 from flexarm_env.plant.outputs import add_sensors
 from flexarm_env.plant.reading import Coordinates
+from flexarm_env.plant.reduction import reduce_beam
 from flexarm_env.plant.structure import Key, LinearModel, Structure, exceeds, is_stacked, structure_of
 
 
@@ -31,7 +32,9 @@ def assemble(structure: Structure) -> LinearModel:
 @lru_cache(maxsize=64)
 def _assemble_one(key: Key) -> LinearModel:
     """Build the matrices of one arm, cached: fits try many arms whose laws alone differ."""
-    model = _assemble(structure_of(key))
+    structure = structure_of(key)
+    model = _assemble(structure)
+    model = reduce_beam(model, structure.vibrations) if structure.vibrations else model
     for quantity in vars(model).values():
         if isinstance(quantity, np.ndarray):
             quantity.flags.writeable = False
@@ -123,6 +126,7 @@ def _add_beam_forces(s: Structure, beam: Beam, numbering: Numbering, model: Line
     rows = numbering.spread(beam.deflection_rows(places, absolute=True))
     drag = turned(weights[..., None] * rows)
     tip = _tip(beam, numbering)
+    model.tip = numbering.spread(beam.deflection_rows(beam.length[..., None], absolute=False))[..., 0, :]
     own, hung = (np.asarray(mass)[..., None] * tip[..., 0, :] for mass in (s.tip_mass, s.payload))
     own = own + np.asarray(s.mass_per_length)[..., None] * drag.sum(axis=-1)
     model.beam_velocity = np.concatenate([rows, np.zeros_like(rows[..., :1, :])], axis=-2)

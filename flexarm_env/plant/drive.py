@@ -48,6 +48,7 @@ def drive_model(s: Structure, names: list[str], motor: int, mass: Matrix, dampin
         beam_velocity=np.zeros((*arms, 1, size)),
         signals=[],
         settled=np.zeros((*arms, extra, 2 * size)),
+        tip=np.zeros((*arms, size)),
     )
     if lagged:
         model.from_extra[..., motor, 0] = torque_per_amp

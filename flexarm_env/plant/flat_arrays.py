@@ -175,7 +175,7 @@ def _counts(structure: Structure, model: LinearModel, modes: Sequence[Mode], poi
     pulled = np.any(np.not_equal(structure.hub_stiffness, 0.0)) or structure.is_servo
     holds = pulled or np.any(model.extra_from_motion[..., 0])  # a filtered angle
     n[at.COUPLED] = bodies == 2 or holds
-    n[at.TIP] = len(model.names) - 2 if structure.elements else -1
+    n[at.TIP] = len(model.names) - 2 if structure.elements and not structure.vibrations else -1
     n[at.HUB_BODY] = bodies - 1 if structure.has_joint else 0
     n[at.DRIVE_FEEDBACK] = at.LIMITED if structure.has_limits else at.PROPORTIONAL if structure.is_servo else at.NO_FEEDBACK
     n[at.VARYING] = varying

@@ -20,7 +20,7 @@ COMMAND, HUB_TORQUE, MOTOR_TORQUE, ONE, GEAR_SIDE, HELD_HUB, HELD_MOTOR = range(
 Key = tuple[tuple[Any, ...], tuple[tuple[Any, ...], ...]]
 
 #: Quantities that arms of one kind have in common.
-WHOLE = ("elements", "has_joint", "sensors")
+WHOLE = ("elements", "vibrations", "has_joint", "sensors")
 #: Frequency of a motor on touching gears with the hub held [rad/s]: where backlash requires a separate motor but no compliance
 #: is given, stiff enough that windup stays below a pot's resolution; and on gears that are as good as rigid.
 STIFF_GEARS, RIGID_GEARS = 960.0, 48e3
@@ -63,6 +63,7 @@ class Structure:
     fixture_inertia: float = 0.0
     fixture_damping_time: float = 0.0
     elements: int = 0  # 0: a rigid arm
+    vibrations: int = 0  # of the beam that are kept; 0: all that its elements have
     length: float = 0.0
     mass_per_length: float = 0.0
     bending_stiffness: float = 0.0
@@ -157,7 +158,7 @@ def stacked(structures: Sequence[Structure]) -> Structure:
         channels = [structure.sensors[signal] for structure in structures]
         rows = np.array([(c.gain, c.offset, c.filter, c.position) for c in channels])
         values.setdefault("sensors", {})[signal] = Channel(channels[0].reading, channels[0].strain, *rows.T)
-    return Structure(elements=first.elements, has_joint=first.has_joint, **values)
+    return Structure(elements=first.elements, vibrations=first.vibrations, has_joint=first.has_joint, **values)
 
 
 @dataclass
@@ -179,6 +180,7 @@ class LinearModel:
     beam_velocity: Matrix  # (drag points + 1, coordinates): of each point; the last row is empty
     signals: list[str]
     settled: Matrix  # (extra, 2 coordinates): filters of accelerations from [q, q̇], of an arm long at constant speed
+    tip: Matrix  # (coordinates,): deflection of the tip from the hub's line
 
 
 def structure_of(key: Key) -> Structure:

@@ -171,4 +171,4 @@ def wide_error_slopes(prediction: Prediction, parameters: FitParameters, slopes:
 
 def in_threads(tasks: list[tuple[Callable[[int], Floats], int]]) -> list[Floats]:
     """Run functions of one number in the threads of the present context, since replays release the interpreter."""
-    return list(Parallel(prefer="threads")(delayed(function)(number) for function, number in tasks))
+    return list(Parallel(require="sharedmem")(delayed(function)(number) for function, number in tasks))

@@ -106,7 +106,7 @@ def _aside(x: Floats, k: int, width: float) -> Floats:
 
 
 def _in_columns(column: Callable[[int, float], Floats], steps: Floats) -> Floats:
-    columns = Parallel(prefer="threads")(delayed(column)(k, width) for k, width in enumerate(steps))
+    columns = Parallel(require="sharedmem")(delayed(column)(k, width) for k, width in enumerate(steps))
     return np.nan_to_num(np.stack(columns, axis=1))
 
 

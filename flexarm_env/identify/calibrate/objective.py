@@ -65,6 +65,7 @@ class Objective:
         parameters: the fitted ones.
         torque_noise: process noise [Nm]; 0 for free replays.
         weights: of errors and values.
+        reduced: whether beams are left their slow vibrations (see `Dataset.plants`).
         observers: gains of the corrected replays.
         starts: initial states of the recordings.
     """
@@ -74,6 +75,7 @@ class Objective:
     parameters: FitParameters
     torque_noise: float
     weights: Weights
+    reduced: bool = False
     observers: ObserverBank = field(default_factory=ObserverBank, repr=False, compare=False)
     starts: StartBank = field(default_factory=StartBank, repr=False, compare=False)
 
@@ -135,7 +137,7 @@ class Objective:
         return np.clip(np.nan_to_num(np.concatenate(parts), nan=largest), -largest, largest)
 
     def _errors(self, arm: Arm, runs: Sequence[Run]) -> list[Floats]:
-        dataset, plants = self.dataset, self.dataset.plants(arm)
+        dataset, plants = self.dataset, self.dataset.plants(arm, self.reduced)
         judges_free_run = error_measure(arm).judges_free_run
         errors = []
         for place, run in enumerate(runs):
@@ -148,7 +150,7 @@ class Objective:
         return errors
 
 
-def objective_at(arm: Arm, dataset: Dataset, parameters: FitParameters, torque_noise: float) -> Objective:
+def objective_at(arm: Arm, dataset: Dataset, parameters: FitParameters, torque_noise: float, reduced: bool = False) -> Objective:
     """Build an objective at one level of process noise [Nm], with errors of unit weight."""
     sigma = np.ones((len(dataset.runs), len(dataset.signals)))
-    return Objective(arm, dataset, parameters, torque_noise, Weights(sigma, parameters.priors))
+    return Objective(arm, dataset, parameters, torque_noise, Weights(sigma, parameters.priors), reduced)

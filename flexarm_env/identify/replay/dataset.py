@@ -21,6 +21,7 @@ from flexarm_env.identify.replay.scales import scales_of
 from flexarm_env.identify.replay.settle_noise import settle_noise
 from flexarm_env.identify.replay.start_fit import Stretch
 from flexarm_env.identify.replay.thinning import thin
+from flexarm_env.identify.replay.vibrations import count_vibrations
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.plant.plant import Plant
 from flexarm_env.recordings.recording import Recording
@@ -39,6 +40,7 @@ class Dataset:
         noise: (signals,) standard deviation, SI units.
         scales: by unit and for "command", sizes of quantities over those of the thesis's arm, which typical sizes fit.
         settings: numbers of the method.
+        vibrations: slowest ones of a beam that suffice where a replay follows the readings; 0 for all.
         notes: a line each for a person, on noise and on samples that are left out.
     """
 
@@ -48,6 +50,7 @@ class Dataset:
     noise: Floats
     scales: Mapping[str, float]
     settings: Settings
+    vibrations: int = 0
     notes: tuple[str, ...] = ()
 
     @functools.cached_property
@@ -79,9 +82,14 @@ class Dataset:
         """Whether any run is replayed in closed loop."""
         return any(run.loop is not None for run in self.runs)
 
-    def plants(self, arm: Arm) -> dict[Stated, Plant]:
-        """Build an arm's plants by what the runs state of it."""
-        return plants_by_stated(arm, (run.stated for run in self.runs), self.interval)
+    def plants(self, arm: Arm, reduced: bool = False) -> dict[Stated, Plant]:
+        """Build an arm's plants by what the runs state of it.
+
+        Args:
+            arm: the model.
+            reduced: whether its beam is left the `vibrations` alone, for replays that lead to a model and do not judge it.
+        """
+        return plants_by_stated(arm, (run.stated for run in self.runs), self.interval, self.vibrations if reduced else 0)
 
     def stretch(self, run: Run, loop: Loop | None = None) -> Stretch:
         """Cut out the first samples of a run, to which its initial state is fitted.
@@ -139,6 +147,6 @@ def prepare(
 def _dataset(arm: Arm, recordings: Sequence[Recording], noise: Floats, settings: Settings) -> Dataset:
     interval = float(np.median([r.sample_time for r in recordings]))
     runs = tuple(build_run(arm, recording, noise, interval, settings) for recording in recordings)
-    return Dataset(
-        runs, tuple(arm.signals), interval, noise, scales_of(arm, runs, list(arm.signals), settings.reference), settings
-    )
+    scales = scales_of(arm, runs, list(arm.signals), settings.reference)
+    vibrations = count_vibrations(arm, runs, interval, noise, settings)
+    return Dataset(runs, tuple(arm.signals), interval, noise, scales, settings, vibrations)

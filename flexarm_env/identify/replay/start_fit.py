@@ -178,7 +178,7 @@ def _mode_directions(plant: Plant, most: int) -> Floats:
     if count == 0:
         return np.zeros((0, plant.states))
     squares, shapes = eigh(model.stiffness[bodies:, bodies:], model.mass[bodies:, bodies:], subset_by_index=[0, count - 1])
-    shapes = shapes * np.sign(shapes[-2])  # of either sign; a fit carried along needs one: the tip's deflection is positive
+    shapes *= np.where(model.tip[bodies:] @ shapes < 0.0, -1.0, 1.0)  # of either sign; a fit carried along needs one
     modes = np.zeros((count, 2, plant.states))
     modes[:, 0, bodies:size] = shapes.T / np.sqrt(squares)[:, None]
     modes[:, 1, size + bodies : 2 * size] = shapes.T

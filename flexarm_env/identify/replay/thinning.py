@@ -86,7 +86,7 @@ def _count(arm: Arm, recordings: Sequence[Recording], noise: Floats, settings: S
     )
     count = min(int(longest / interval * (1.0 + settings.preparation.uneven)), shortest // numbers.fewest_samples)
     if count > 1:
-        plant = _with_friction(arm, recordings, settings).plant(interval)
+        plant = with_friction(arm, [r.command for r in recordings], settings).plant(interval)
         while count > 1 and not _command_error(plant, recordings, noise, count * interval, settings) <= numbers.command_error:
             count -= 1
     return max(count, 1)
@@ -109,11 +109,11 @@ def _slow_vibration(arm: Arm, interval: float, slowest: int) -> float:
     return float(np.concatenate(found).max(initial=LEAST_FREQUENCY))
 
 
-def _with_friction(arm: Arm, recordings: Sequence[Recording], settings: Settings) -> Arm:
-    """Give an arm without Coulomb friction one of the usual size: the machine may have what the model lacks."""
+def with_friction(arm: Arm, commands: Sequence[Floats], settings: Settings) -> Arm:
+    """Give an arm without Coulomb friction one of the usual size beside its commands: a machine may have what the model lacks."""
     if "coulomb" in arm.effects or not arm.can_have("coulomb"):
         return arm
-    command = np.sqrt(np.mean([np.mean(r.command**2) for r in recordings]))
+    command = np.sqrt(np.mean([np.mean(one**2) for one in commands]))
     usual = arm.known["coulomb"].parameters["torque"].typical / settings.reference.torque
     return arm.with_effect("coulomb", torque=float(usual * arm.structure().torque_by_command * command))
 

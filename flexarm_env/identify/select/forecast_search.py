@@ -158,7 +158,7 @@ class ForecastSearch:
             found = promises(one.prediction, one.parameters, names)
             wanted = self._finalists(one, found)
             stage.at(0.5, f"fitting {', '.join(p.effect for p in wanted)}{_beside(one)}")
-            for new in Parallel(prefer="threads")(delayed(self._with)(one, promise) for promise in wanted):
+            for new in Parallel(require="sharedmem")(delayed(self._with)(one, promise) for promise in wanted):
                 key = frozenset(new.effects)
                 if not new.at_bound and (key not in fresh or _fitted_cost(new) < _fitted_cost(fresh[key])):
                     fresh[key] = new
@@ -184,13 +184,13 @@ class ForecastSearch:
         return Hypothesis((*one.effects, promise.effect), parameters, found)
 
     def _finish(self, fresh: Hypotheses, before: float) -> list[Hypothesis]:
-        """Calibrate the best to the end, and others that gain nearly as much on a cost; best first."""
+        """Calibrate to the end, and keep, the best and others that gain nearly as much on a cost; best first."""
         done: list[Hypothesis] = []
         for one in sorted(fresh.values(), key=_fitted_cost)[: self.numbers.width]:
             least = self.numbers.near_gain * (before - _fitted_cost(done[0])) if done else -np.inf
             if before - _fitted_cost(one) >= least:
-                one = self._calibrate(one.effects, one.arm, one.prediction.disturbances)
-            done = sorted([*done, one], key=_fitted_cost)
+                finished = self._calibrate(one.effects, one.arm, one.prediction.disturbances)
+                done = sorted([*done, finished], key=_fitted_cost)
         return done
 
     def _model(self, one: Hypothesis) -> Model:

@@ -110,7 +110,7 @@ def promises(now: Prediction, parameters: FitParameters, effects: Sequence[str])
     backgrounds = [_background(parameters, at_torque(now, torque)) for torque in torques]
     base = min(background.cost(background.left) for background in backgrounds)
     tasks = [(name, start) for name in effects for start in starts_of(now.arm, name, now.dataset)]
-    tried = Parallel(prefer="threads")(delayed(_promise)(backgrounds, base, name, start) for name, start in tasks)
+    tried = Parallel(require="sharedmem")(delayed(_promise)(backgrounds, base, name, start) for name, start in tasks)
     best: dict[str, Promise] = {}
     for one in tried:
         if one.gain > 0.0 and (one.effect not in best or one.cost < best[one.effect].cost):

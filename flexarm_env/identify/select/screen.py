@@ -74,7 +74,9 @@ def attempt(base: Baseline, signature: Signature | None) -> Trial:
     added = effect_parameters(arm, name, dataset) if name else FitParameters()
     prior = np.concatenate([base.objective.weights.prior, added.priors])
     weights = Weights(base.objective.weights.sigma, prior)
-    objective = Objective(arm, dataset, base.objective.parameters + added, base.objective.torque_noise, weights)
+    objective = Objective(
+        arm, dataset, base.objective.parameters + added, base.objective.torque_noise, weights, base.objective.reduced
+    )
     start = added.position(arm)
     steps, x = added.step_sizes(start, dataset.settings.parameters), np.concatenate([base.x, start])
     numbers, iterations, tolerance = dataset.settings.least_squares, screening.iterations, screening.tolerance

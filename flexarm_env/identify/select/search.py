@@ -84,6 +84,7 @@ class Search:
         """Calibrate what screening found promising, and accept what is worthwhile."""
         models = nearest(self.calibrator, self.criteria, trials, fitting)
         if not trace.accepted and not self.is_late:
+            models = self._restarted(trace, models)
             trace = self._combine_at_once(trace, models, more)
             if trace.accepted:
                 return trace
@@ -113,6 +114,8 @@ class Search:
 
         now, least = trace.model, self.calibrator.settings.selecting.least_removed
         is_explained = self.criteria.is_fully_explained(now)
+        if is_explained and self._is_rough(now):
+            return trace
         enough = now.score.excess - least if is_explained else np.inf
 
         def is_better(found: Model) -> bool:
@@ -124,6 +127,16 @@ class Search:
             return self._stop(trace, f"all {left_out}") if self.is_late else trace
         longer = trace.then("forecast", found.model, found.accepted, found.tried)
         return self.drop_useless(self.swap(longer, progress, untried=True))
+
+    def _is_rough(self, found: Model) -> bool:
+        """Whether two calibrations of one model differ by a share of what they leave, which then says nothing of another effect.
+
+        Where teeth or a stop make contact, a thousandth of a gap moves the error by more than the noise.
+        """
+        calibrator, left = self.calibrator, found.score.excess
+        with calibrator.workers.threads():
+            other = calibrator.calibrate(calibrator.nominal_with_effects_of(found.arm))
+        return abs(calibrator.score(other.arm).excess - left) > calibrator.settings.selecting.rough * left
 
     def combine(self, trace: Trace, progress: Progress) -> Trace:
         """Accept effects that explain the data only together, if there are some."""
@@ -191,6 +204,18 @@ class Search:
             return trace
         return self.combine(trace, progress)
 
+    def _restarted(self, trace: Trace, models: list[Model]) -> list[Model]:
+        """Calibrate the best model from the nominal constants, too, where none comes near: it alone may be what is missing."""
+        possible = [m for m in models if not m.at_bound]
+        if not possible or not none_comes_near(self.criteria, models, trace.model):
+            return models
+        measure = self.criteria.measure([m.score for m in possible])
+        best = min(possible, key=lambda m: measure(m.score))
+        with self.calibrator.workers.threads():
+            calibration = self.calibrator.restart_from_nominal(best.calibration)
+        again = judge(best.effects, calibration, self.calibrator.dataset)
+        return [again if m is best else m for m in models]
+
     def _recalibrate(self, trace: Trace) -> Trace:
         """Calibrate once more without anything new: that gain is no merit of another effect."""
         with self.calibrator.workers.threads():
@@ -250,6 +275,13 @@ class Search:
         arms = [calibrator.nominal_with_effects_of(m.arm) for m in first]
         again = fit_models(calibrator, [m.effects for m in first], arms, Progress(), thorough=True)
         rank = self.criteria.rank(winner.score, measure, dataset)
+        if again:  # they may come near the noise only now
+            measure = self.criteria.measure([m.score for m in (*first, *again)])
+            nearest = min((*first, *again), key=lambda m: measure(m.score))
+            removed, rank = (
+                measure(trace.model.score) - measure(nearest.score),
+                self.criteria.rank(nearest.score, measure, dataset),
+            )
         if len(again) < len(first):
             trace = self._stop(trace, f"rivals of {winner.effects[0]} were calibrated again")
             return trace, sorted(first, key=rank)

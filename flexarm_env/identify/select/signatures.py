@@ -87,7 +87,7 @@ def baseline(found: Calibration, dataset: Dataset, levels: Sequence[float] | Non
     scale, own = torque_scale(found.arm, dataset.runs), found.arm.constants["drive"]["torque_noise"]
     for level in settings.process_noise.screening if levels is None else levels:
         torque_noise = max(level * scale, own)
-        objective = objective_at(found.arm, dataset, found.parameters, torque_noise).weighted_by(found.arm)
+        objective = objective_at(found.arm, dataset, found.parameters, torque_noise, reduced=True).weighted_by(found.arm)
         visible = np.sqrt(np.mean((objective.weights.sigma / dataset.noise) ** 2)) > settings.screening.visible
         if torque_noise == own or visible:
             break

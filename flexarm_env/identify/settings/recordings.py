@@ -88,6 +88,12 @@ class Thinning:
         "Slowest vibrations of the free and of the held hub that count.",
         "recordings of the thesis's arms show two by far above the noise; of faster ones, the response to the command counts",
     )
+    vibration_error: float = tuned(
+        0.05,
+        "Largest change of a signal, rms over its noise, by the vibrations of a beam that replays leave out.",
+        "changes an error at the noise by 0.1 %; seven of the twelve are kept of `thesis-fem` at 500 Hz",
+    )
+    vibration_windows: int = tuned(12, "Windows in which it is measured, spread over all recordings at most.")
     command_error: float = tuned(
         0.2,
         "Error that the mean command makes in a signal, rms over its noise in windows, that is left.",

@@ -137,6 +137,11 @@ class Selecting:
         "Share of a signal's excess that may be left where it does not come near the noise, though all signals together do.",
         "a strain gage read at a tenth of the rate ends at 1.43 of its noise, with 0.05 % left",
     )
+    rough: float = tuned(
+        0.1,
+        "Share of the excess left by which calibrations of one model from two starts differ where its error is rough.",
+        "a gap of 0.06 rad: a fifth to six times of it; a cable's spring that imitates two torques: less than a hundredth",
+    )
     noticed: float = tuned(
         0.1,
         "The error of a signal that moves by more than this share is noticed: an effect touches it, or makes it worse.",
