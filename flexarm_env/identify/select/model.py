@@ -42,6 +42,11 @@ class Model:
                 return True
         return False
 
+    def error_over(self, other: Model) -> float:
+        """Compute the ratio of its errors in windows to those of another, on the fitted or the held-out part, the larger one."""
+        pairs = ((self.score, other.score), (self.fitted_score, other.fitted_score))
+        return max(own.windows / its.windows for own, its in pairs)
+
     def bic(self, dataset: Dataset) -> float:
         """Compute the Bayesian information criterion on all of the data (Schwarz, Ann. Stat. 6 (1978) 461).
 

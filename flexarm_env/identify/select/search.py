@@ -290,7 +290,13 @@ class Search:
             trace = trace.then("fit", tried=_gains(trace, better, measure))
         left = min(measure(m.score) for m in better)
         most = left + self.criteria.equivalent_difference(removed, left)
-        return trace, sorted([m for m in better if measure(m.score) <= most], key=rank)
+        return trace, self._simplest_first(sorted([m for m in better if measure(m.score) <= most], key=rank))
+
+    def _simplest_first(self, ranked: list[Model]) -> list[Model]:
+        """Put first the simplest of the models whose errors differ from the first one's by less than calibrations leave."""
+        first, least = ranked[0], self.calibrator.settings.errors.converged
+        simplest = min((m for m in ranked if m.error_over(first) <= least), key=lambda m: len(m.calibration.parameters))
+        return [simplest, *(m for m in ranked if m is not simplest)]
 
 
 def exchange(trace: Trace, place: int, comparison: RivalComparison) -> Trace:
