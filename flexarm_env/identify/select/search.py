@@ -194,23 +194,27 @@ class Search:
 
     def _combine_at_once(self, trace: Trace, models: Sequence[Model], progress: Progress) -> Trace:
         """Accept the first effect and more beside it where none comes near alone, but some explain the data together."""
-        possible = [m for m in models if not m.at_bound]
-        if not possible:
+        best = self._best(models)
+        if best is None:
             return trace
-        measure = self.criteria.measure([m.score for m in possible])
-        best = min(possible, key=lambda m: measure(m.score))
         trace = replace(trace, chain=(*trace.chain, best))
         if not none_comes_near(self.criteria, models, trace.model):
             return trace
         return self.combine(trace, progress)
 
+    def _best(self, models: Sequence[Model]) -> Model | None:
+        """Find the best of the models whose effects stay within their ranges; None without any."""
+        possible = [m for m in models if not m.at_bound]
+        if not possible:
+            return None
+        measure = self.criteria.measure([m.score for m in possible])
+        return min(possible, key=lambda m: measure(m.score))
+
     def _restarted(self, trace: Trace, models: list[Model]) -> list[Model]:
         """Calibrate the best model from the nominal constants, too, where none comes near: it alone may be what is missing."""
-        possible = [m for m in models if not m.at_bound]
-        if not possible or not none_comes_near(self.criteria, models, trace.model):
+        best = self._best(models)
+        if best is None or not none_comes_near(self.criteria, models, trace.model):
             return models
-        measure = self.criteria.measure([m.score for m in possible])
-        best = min(possible, key=lambda m: measure(m.score))
         with self.calibrator.workers.threads():
             calibration = self.calibrator.restart_from_nominal(best.calibration)
         again = judge(best.effects, calibration, self.calibrator.dataset)
@@ -262,8 +266,8 @@ class Search:
         """Find the models between which the data do not decide, best first, each calibrated from nominal constants.
 
         A calibration that began with biased constants leaves more than the difference between near rivals, and so does one that
-        ended where constants compensate each other: each is calibrated by both schedules. Where no time is
-        left for another, all near rivals are taken as undecided.
+        ended where constants compensate each other: each is calibrated by both schedules, and ranked by what it then leaves.
+        Where no time is left for another, all near rivals are taken as undecided.
         """
         calibrator, dataset = self.calibrator, self.calibrator.dataset
         left = measure(winner.score)
@@ -274,17 +278,13 @@ class Search:
             return trace, first
         arms = [calibrator.nominal_with_effects_of(m.arm) for m in first]
         again = fit_models(calibrator, [m.effects for m in first], arms, Progress(), thorough=True)
-        rank = self.criteria.rank(winner.score, measure, dataset)
-        if again:  # they may come near the noise only now
-            measure = self.criteria.measure([m.score for m in (*first, *again)])
-            nearest = min((*first, *again), key=lambda m: measure(m.score))
-            removed, rank = (
-                measure(trace.model.score) - measure(nearest.score),
-                self.criteria.rank(nearest.score, measure, dataset),
-            )
         if len(again) < len(first):
             trace = self._stop(trace, f"rivals of {winner.effects[0]} were calibrated again")
-            return trace, sorted(first, key=rank)
+            return trace, sorted(first, key=self.criteria.rank(winner.score, measure, dataset))
+        every = (*first, *again)
+        measure = self.criteria.measure([m.score for m in every])
+        nearest = min((m.score for m in every), key=measure)
+        removed, rank = measure(trace.model.score) - measure(nearest), self.criteria.rank(nearest, measure, dataset)
         better = [min(pair, key=rank) for pair in zip(first, again, strict=True)]
         if len(winner.effects) == 1:
             trace = trace.then("fit", tried=_gains(trace, better, measure))
