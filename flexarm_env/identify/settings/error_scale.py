@@ -13,7 +13,7 @@ class ErrorScale:
 
     converged: float = tuned(
         1.002,
-        "A calibration that ends below this is not continued.",
+        "Ratio of the errors of two ends of one calibration, or of two models, below which neither is better.",
         "26 null machines of seeds 2 and 3 then ended at 0.994 to 1.005 times the noise, before at 1.004 to 1.05",
     )
     at_noise: float = tuned(
