@@ -9,6 +9,7 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import solve_discrete_lyapunov
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.replay.dataset import Dataset
@@ -70,6 +71,24 @@ def innovation_sigma(plant: Plant, dataset: Dataset, torque_noise: float) -> Flo
     output, noise = plant.model.output, dataset.noise
     covariance = riccati(transition, output, process, noise, dataset.settings.observers.doublings)
     return np.asarray(np.sqrt(np.diag(output @ covariance @ output.T) + noise**2), dtype=np.float64)
+
+
+def innovation_noise(plant: Plant, dataset: Dataset, gains: Floats) -> Floats:
+    """Compute the standard deviation (signals,) of a moving arm's innovations under the noise of its readings alone.
+
+    An observer that trusts its readings more than they deserve passes their noise on: white noise to the sqrt(6)-fold at most
+    for an arm that follows two readings in line.
+
+    Args:
+        plant: a compiled arm.
+        dataset: the recordings.
+        gains: physical ones (modes, states, signals) of the observer.
+    """
+    transition, _ = _process(plant, 0, dataset, 0.0)
+    ahead, output, noise = transition @ gains[0], plant.model.output, dataset.noise
+    covariance = solve_discrete_lyapunov(transition - ahead @ output, (ahead * noise**2) @ ahead.T)
+    passed_on = np.diag(output @ covariance @ output.T)
+    return np.asarray(np.sqrt(np.maximum(passed_on, 0.0) + noise**2), dtype=np.float64)
 
 
 def innovation_sigmas(plant: Plant, run: Run, dataset: Dataset, torque_noise: float, gains: Floats) -> Floats:

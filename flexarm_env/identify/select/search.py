@@ -90,6 +90,10 @@ class Search:
                 return trace
         if not self.is_late:
             models = others(self.calibrator, self.criteria, models, trials, trace.model, more)
+        if not trace.accepted and len(trace.chain) == 1 and not self.is_late:
+            trace = self._combine_at_once(trace, models, more)
+            if trace.accepted:
+                return trace
         if self.is_late:
             trace = self._stop(trace, _beside("every promising effect was calibrated", trace))
         elif trace.accepted:
