@@ -9,7 +9,6 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_discrete_lyapunov
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.replay.dataset import Dataset
@@ -86,7 +85,7 @@ def innovation_noise(plant: Plant, dataset: Dataset, gains: Floats) -> Floats:
     """
     transition, _ = _process(plant, 0, dataset, 0.0)
     ahead, output, noise = transition @ gains[0], plant.model.output, dataset.noise
-    covariance = solve_discrete_lyapunov(transition - ahead @ output, (ahead * noise**2) @ ahead.T)
+    covariance = gathered((ahead * noise**2) @ ahead.T, transition - ahead @ output, dataset.settings.observers.doublings)
     passed_on = np.diag(output @ covariance @ output.T)
     return np.asarray(np.sqrt(np.maximum(passed_on, 0.0) + noise**2), dtype=np.float64)
 
@@ -159,6 +158,25 @@ def forecast_gains(plant: Plant, dataset: Dataset, torque_noise: float, noise: F
             process[body, body] += drift[body] ** 2
         gains[mode] = _gain_of(transition, process, plant.model.output, noise, dataset)
     return gains
+
+
+def gathered(added: Floats, transition: Floats, doublings: int) -> Floats:
+    """Compute the covariance (states, states) that a disturbance leaves, by doubling.
+
+    It exists for an arm that no reading corrects, too, where a Lyapunov equation has no solution.
+
+    Args:
+        added: covariance of the disturbance in one sample (states, states).
+        transition: of one sample (states, states).
+        doublings: most doublings of the time that is covered.
+    """
+    total, ahead = added, transition
+    for _ in range(doublings):
+        further = total + ahead @ total @ ahead.T
+        if np.array_equal(further, total):
+            break
+        total, ahead = further, ahead @ ahead
+    return total
 
 
 def modal_gains(plant: Plant, physical: Floats) -> Floats:
