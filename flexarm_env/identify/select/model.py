@@ -34,11 +34,15 @@ class Model:
 
     @property
     def at_bound(self) -> bool:
-        """Whether a parameter of its effects ran to the end of its range: no size of the effect explains the data."""
+        """Whether the size of one of its effects ran to the end of its range: none explains the data.
+
+        What has no null may end there, such as the damping of a stop that has none.
+        """
         for parameter in self.calibration.parameters:
-            section, name, *_ = parameter.path.split(".")
+            section, name, *keys = parameter.path.split(".")
             inside = self.arm.value(parameter.path) not in (parameter.low, parameter.high)
-            if section == "effects" and name in self.effects and not inside:
+            is_judged = section == "effects" and name in self.effects
+            if is_judged and not inside and self.arm.known[name].parameters[keys[0]].null is not None:
                 return True
         return False
 
