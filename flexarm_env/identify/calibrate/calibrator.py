@@ -98,7 +98,7 @@ class Calibrator:
         return calibrator, calibrator.calibrate_constants()
 
     def _settled_on_all_data(self, found: Calibration) -> Calibration | None:
-        """Calibrate on all of the data where the fitted part leaves constants uncertain, not the model: None where it is the model.
+        """Calibrate on all of the data where the fitted part leaves constants uncertain; None where the model is to blame.
 
         Constants that explain what they were fitted to, and not the rest, may be uncertain. Then some explain both.
         """

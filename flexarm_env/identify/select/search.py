@@ -107,7 +107,7 @@ class Search:
         return self._accept(trace, possible) if possible else trace
 
     def ask_forecasts(self, trace: Trace, progress: Progress) -> Trace:
-        """Accept the model that forecasts ask for in place of another, if it alone explains the data, or removes enough more.
+        """Accept the model that forecasts ask for in place of another, if it alone explains the data, or removes most of the rest.
 
         Errors over a second or more show what is missing where one effect is. Where several hide each other, forecasts over a
         fraction of that are less misled.
@@ -122,8 +122,11 @@ class Search:
             return trace
         enough = now.score.excess - least if is_explained else np.inf
 
+        most = (1.0 - self.calibrator.settings.selecting.least_total_gain) * now.score.excess
+
         def is_better(found: Model) -> bool:
-            return found.score.excess <= enough and self.criteria.is_fully_explained(found)
+            removes_most = self.criteria.explains(found) and found.score.excess <= most
+            return found.score.excess <= enough and (removes_most or self.criteria.is_fully_explained(found))
 
         calibrated = frozenset(trace.effects if is_explained else ())
         found = ForecastSearch(self.calibrator).propose(trace.steps[0].model, calibrated, is_better, progress)

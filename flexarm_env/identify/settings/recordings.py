@@ -102,7 +102,7 @@ class Thinning:
     frictions: tuple[float, ...] = tuned(
         (0.7, 1.0, 1.2, 1.4),
         "Shares of Coulomb friction with which that error must not be larger.",
-        "a hub held by 1.1 times the friction of its model, under a noisy command: 0.04 with 0.6 to 1.0 of it, 2 to 3 from 1.1 on",
+        "a hub held by 1.1 times its model's friction under a noisy command: 0.04 with 0.6 to 1.0 of it, 2 to 3 from 1.1 on",
     )
     fewest_samples: int = tuned(
         500, "Fewest samples that a thinned recording keeps.", "two seconds at the longest step; no sweep recorded", "samples"
