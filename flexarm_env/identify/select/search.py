@@ -107,7 +107,7 @@ class Search:
         return self._accept(trace, possible) if possible else trace
 
     def ask_forecasts(self, trace: Trace, progress: Progress) -> Trace:
-        """Accept the model that forecasts ask for in place of another, if it alone explains the data, or removes most of the rest.
+        """Accept the model that forecasts ask for in place of another, if it explains the data, or removes most of the rest.
 
         Errors over a second or more show what is missing where one effect is. Where several hide each other, forecasts over a
         fraction of that are less misled.
