@@ -125,7 +125,8 @@ class Search:
         most = (1.0 - self.calibrator.settings.selecting.least_total_gain) * now.score.excess
 
         def is_better(found: Model) -> bool:
-            removes_most = self.criteria.explains(found) and found.score.excess <= most
+            is_worthwhile = self.criteria.is_worthwhile(now, found, lambda s: s.excess) and self.criteria.explains(found)
+            removes_most = is_worthwhile and found.score.excess <= most
             return found.score.excess <= enough and (removes_most or self.criteria.is_fully_explained(found))
 
         calibrated = frozenset(trace.effects if is_explained else ())
