@@ -61,8 +61,7 @@ def test_two_missing_torques_are_named_where_one_other_effect_fits_better_than_e
     """A cable's spring alone imitates both, at two to three times the noise; Coulomb friction alone leaves seventy times."""
     found = search(camera, simulate(machine_with(camera, PAIR), "square", duration=5.0, rate=500.0, seed=seed))
     assert found.verdict == "effects"
-    assert found.effects[0] == "coulomb"
-    assert {"constant_torque", "asymmetric_coulomb"} & set(found.equivalent[1])
+    assert set(found.effects) in ({"coulomb", "constant_torque"}, {"coulomb", "asymmetric_coulomb"})
     assert found.arm.value("effects.coulomb.torque") == pytest.approx(0.03, rel=0.05)
     assert found.error["final"] < 1.1 < 50.0 < found.error["refitted"]
 

@@ -88,11 +88,26 @@ class Calibrator:
             A calibrator of the dataset so held out, and its calibration of the constants.
         """
         found = self.calibrate_constants()
+        settled = self._settled_on_all_data(found)
+        if settled is not None:
+            return self, settled
         later = hold_out_late(found.arm, self.dataset)
         if later is self.dataset:
             return self, found
         calibrator = replace(self, dataset=later)
         return calibrator, calibrator.calibrate_constants()
+
+    def _settled_on_all_data(self, found: Calibration) -> Calibration | None:
+        """Calibrate on all of the data where the fitted part leaves constants uncertain; None where the model is to blame.
+
+        Constants that explain what they were fitted to, and not the rest, may be uncertain. Then some explain both.
+        """
+        most = self.settings.errors.nothing_left
+        if self.score(found.arm).windows <= most or self.score(found.arm, held_out=False).windows > most:
+            return None
+        again = self.calibrate_on_all_data(found)
+        left = max(self.score(again.arm, held_out).windows for held_out in (False, True))
+        return again if left <= most else None
 
     def calibrate_by_best_schedule(self, arm: Arm) -> tuple[Calibration, Score]:
         """Calibrate from an arm; also give the errors on the fitted part.

@@ -13,7 +13,7 @@ from flexarm_env.experiments.stated import Stated
 from flexarm_env.identify.calibrate.parameters import FitParameters
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.error_measure import error_measure
-from flexarm_env.identify.replay.observer import observer_gains
+from flexarm_env.identify.replay.observer import innovation_noise, observer_gains
 from flexarm_env.identify.replay.readings import rms_of
 from flexarm_env.identify.replay.replay import replay
 from flexarm_env.identify.replay.run import Run
@@ -31,10 +31,12 @@ class Weights:
     Attributes:
         sigma: (runs, signals) by which errors are divided, SI units.
         prior: (x,) standard deviation of each value.
+        excess_factor: rms of sigma over what the noise of the sensors alone leaves; 1 where errors are weighed by that.
     """
 
     sigma: Floats
     prior: Floats
+    excess_factor: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -111,10 +113,11 @@ class Objective:
         """
         dataset = self.dataset
         sigma = self.rms_errors_of(arm)
-        unexplained = (1.0 - 1.0 / np.mean((sigma / dataset.noise) ** 2)) if narrow_priors else 0.0
+        factor = float(np.sqrt(np.mean((sigma / self._noise_of(arm)) ** 2)))
+        unexplained = max(1.0 - 1.0 / factor**2, 0.0) if narrow_priors else 0.0
         together = 1.0 + unexplained * max(dataset.settings.calibrating.memory / dataset.interval - 1.0, 0.0)
         narrower = np.array([np.sqrt(together) if p.is_constant else 1.0 for p in self.parameters])
-        return replace(self, weights=Weights(sigma, self.parameters.priors / narrower))
+        return replace(self, weights=Weights(sigma, self.parameters.priors / narrower, factor))
 
     def rms_errors_of(self, arm: Arm) -> Floats:
         """Compute the rms error (runs, signals) of the fitted part, at least the noise."""
@@ -122,10 +125,24 @@ class Objective:
         found = np.array([rms_of(errors, run.measured) for errors, run in pairs])
         return np.maximum(np.nan_to_num(found, nan=np.inf, posinf=FAILED_ERROR), self.dataset.noise)
 
+    def _noise_of(self, arm: Arm) -> Floats:
+        """Compute what the noise of the sensors alone leaves (runs, signals) under the observers of an arm."""
+        dataset = self.dataset
+        if self.torque_noise == 0.0:
+            return np.broadcast_to(dataset.noise, (len(dataset.runs), len(dataset.signals)))
+        plants = dataset.plants(arm, self.reduced)
+        left = {}
+        for run in dataset.fitted:
+            if run.stated not in left:
+                plant = plants[run.stated]
+                gains = self.observers.gains(arm, plant, run, dataset, self.torque_noise)
+                left[run.stated] = innovation_noise(plant, dataset, gains)
+        return np.array([left[run.stated] for run in dataset.fitted])
+
     @property
     def excess_factor(self) -> float:
-        """The rms of the weights over the noise: 1 where errors are weighed by the noise alone."""
-        return float(np.sqrt(np.mean((self.weights.sigma / self.dataset.noise) ** 2)))
+        """The rms of the weights over what noise alone leaves: 1 where errors are weighed by that alone."""
+        return self.weights.excess_factor
 
     def rows_of(self, sigma: Floats) -> Floats:
         """Repeat numbers (runs, signals) for each row of the residual (rows,)."""

@@ -58,13 +58,17 @@ class FitParameter:
         """Compute the narrowest difference that a replay resolves: stick-slip turns narrower ones of an effect into noise."""
         if not self.scale:
             return numbers.least_step_constant if self.is_constant else numbers.least_step_effect
-        return numbers.least_step_effect * max(abs(self.value(x)) / self.scale, numbers.least_size)
+        return numbers.least_step_effect * self._size(x, numbers.smallest_size)
 
     def widest_step(self, x: float, numbers: Parameters) -> float:
         """Compute the difference beyond which the value is implausible, or the effect no longer the same."""
         if self.is_constant:
             return numbers.widest_step * self.prior
-        return numbers.widest_step * self.narrowest_step(x, numbers) / numbers.least_step_effect
+        return numbers.widest_step * (self._size(x, numbers.least_size) if self.scale else 1.0)
+
+    def _size(self, x: float, least: float) -> float:
+        """Compute the size of an effect in typical ones, at least a given one."""
+        return max(abs(self.value(x)) / self.scale, least)
 
 
 @dataclass(frozen=True)
@@ -103,6 +107,14 @@ class FitParameters:
     def position(self, arm: Arm) -> Floats:
         """Compute x of an arm's present values."""
         return np.array([parameter.x_of(arm.value(parameter.path)) for parameter in self.items])
+
+    def within(self, x: Floats) -> Floats:
+        """Move x (x,) to the nearest bound where a value has none beyond, and no difference would show a slope."""
+        ranges = [
+            sorted(map(parameter.x_of, (parameter.low, parameter.high))) if parameter.scale else (-np.inf, np.inf)
+            for parameter in self.items
+        ]
+        return np.array([min(max(v, low), high) for (low, high), v in zip(ranges, x, strict=True)])
 
     def step_sizes(self, x: Floats, numbers: Parameters) -> StepSizes:
         """Compute the difference steps at x, the widest to begin with."""

@@ -53,7 +53,7 @@ class Schedule:
                 break
             objective = here if here is not None and noise == own else self._objective(x, noise)
             found = objective, self._minimise(objective, x, steps, last=False)
-            x, steps = found[1].x, found[1].steps
+            x, steps = self.parameters.within(found[1].x), found[1].steps
         if passes:
             objective = self._objective(x, own)
             found = objective, self._minimise(objective, x, steps, last=True)

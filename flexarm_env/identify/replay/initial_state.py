@@ -56,8 +56,7 @@ def find_start(
     else:
         known = [signal for signal, is_early in zip(signals, early, strict=True) if is_early]
         found = _start(time, undriven, measured[:, early], known, noise[early], settings)
-    first = begins[[i for i, signal in enumerate(signals) if signal in ("arm_angle", "motor_speed")]].max(initial=0)
-    if found.moving and first > 0:  # it may have left since the first sample
+    if found.moving:  # it may have left since the first sample
         found = replace(found, rest=_angle_at_rest(measured[:1], signals, noise, settings))
     if "arm_angle" in signals and not early[signals.index("arm_angle")]:
         samples = int(np.searchsorted(time, time[begins[signals.index("arm_angle")]] + settings.longest_moving))

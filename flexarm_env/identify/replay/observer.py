@@ -72,6 +72,24 @@ def innovation_sigma(plant: Plant, dataset: Dataset, torque_noise: float) -> Flo
     return np.asarray(np.sqrt(np.diag(output @ covariance @ output.T) + noise**2), dtype=np.float64)
 
 
+def innovation_noise(plant: Plant, dataset: Dataset, gains: Floats) -> Floats:
+    """Compute the standard deviation (signals,) of a moving arm's innovations under the noise of its readings alone.
+
+    An observer that trusts its readings more than they deserve passes their noise on: white noise to the sqrt(6)-fold at most
+    for an arm that follows two readings in line.
+
+    Args:
+        plant: a compiled arm.
+        dataset: the recordings.
+        gains: physical ones (modes, states, signals) of the observer.
+    """
+    transition, _ = _process(plant, 0, dataset, 0.0)
+    ahead, output, noise = transition @ gains[0], plant.model.output, dataset.noise
+    covariance = gathered((ahead * noise**2) @ ahead.T, transition - ahead @ output, dataset.settings.observers.doublings)
+    passed_on = np.diag(output @ covariance @ output.T)
+    return np.asarray(np.sqrt(np.maximum(passed_on, 0.0) + noise**2), dtype=np.float64)
+
+
 def innovation_sigmas(plant: Plant, run: Run, dataset: Dataset, torque_noise: float, gains: Floats) -> Floats:
     """Compute those (samples, signals) of a run with absent readings, between which the uncertainty of the state grows.
 
@@ -140,6 +158,25 @@ def forecast_gains(plant: Plant, dataset: Dataset, torque_noise: float, noise: F
             process[body, body] += drift[body] ** 2
         gains[mode] = _gain_of(transition, process, plant.model.output, noise, dataset)
     return gains
+
+
+def gathered(added: Floats, transition: Floats, doublings: int) -> Floats:
+    """Compute the covariance (states, states) that a disturbance leaves, by doubling.
+
+    It exists for an arm that no reading corrects, too, where a Lyapunov equation has no solution.
+
+    Args:
+        added: covariance of the disturbance in one sample (states, states).
+        transition: of one sample (states, states).
+        doublings: most doublings of the time that is covered.
+    """
+    total, ahead = added, transition
+    for _ in range(doublings):
+        further = total + ahead @ total @ ahead.T
+        if np.array_equal(further, total):
+            break
+        total, ahead = further, ahead @ ahead
+    return total
 
 
 def modal_gains(plant: Plant, physical: Floats) -> Floats:

@@ -86,10 +86,21 @@ def _count(arm: Arm, recordings: Sequence[Recording], noise: Floats, settings: S
     )
     count = min(int(longest / interval * (1.0 + settings.preparation.uneven)), shortest // numbers.fewest_samples)
     if count > 1:
-        plant = with_friction(arm, [r.command for r in recordings], settings).plant(interval)
-        while count > 1 and not _command_error(plant, recordings, noise, count * interval, settings) <= numbers.command_error:
+        plants = [one.plant(interval) for one in _with_frictions(arm, recordings, settings)]
+        while count > 1 and not all(
+            _command_error(plant, recordings, noise, count * interval, settings) <= numbers.command_error for plant in plants
+        ):
             count -= 1
     return max(count, 1)
+
+
+def _with_frictions(arm: Arm, recordings: Sequence[Recording], settings: Settings) -> list[Arm]:
+    """Give an arm as much Coulomb friction as it may have: what lets a hub creep under a noisy command holds another for good."""
+    usual = with_friction(arm, [r.command for r in recordings], settings)
+    if "coulomb" not in usual.effects:
+        return [usual]
+    path = "effects.coulomb.torque"
+    return [usual.with_values({path: share * usual.value(path)}) for share in settings.thinning.frictions]
 
 
 def _shortest_lag(arm: Arm, recordings: Sequence[Recording]) -> float:

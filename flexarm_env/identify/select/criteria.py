@@ -222,6 +222,11 @@ class ThresholdCriteria:
         return self.refitted.excess / self.nominal.excess
 
     def _least(self, measure: Measure) -> float:
-        """Compute the excess that an effect must remove at least."""
+        """Compute the excess that an effect must remove at least.
+
+        A calibration may end early and leave a share of what there was, but not more than keeps it close to the noise.
+        """
         numbers = self.settings.selecting
-        return max(numbers.least_removed, numbers.least_of_first * measure(self.refitted))
+        return max(
+            numbers.least_removed, min(numbers.least_of_first * measure(self.refitted), excess(self.settings.errors.close))
+        )

@@ -21,7 +21,7 @@ from flexarm_env.identify.calibrate.parameters import FitParameters, free_parame
 from flexarm_env.identify.progress import Progress
 from flexarm_env.identify.replay.density import Prediction, first_disturbances, likeliest
 from flexarm_env.identify.replay.forecast import Disturbances
-from flexarm_env.identify.select.model import Model, judge
+from flexarm_env.identify.select.model import Model, judge, sizes_at_bound
 from flexarm_env.identify.select.promise import Promise, promises
 from flexarm_env.identify.select.starts import candidates, rivals_of
 from flexarm_env.identify.select.trace import Accepted, Tried
@@ -57,9 +57,8 @@ class Hypothesis:
 
     @property
     def at_bound(self) -> bool:
-        """Whether a parameter of its effects ran to the end of its range: no size of the effect explains the data."""
-        paths = [p for p in self.parameters if p.path.split(".")[0] == "effects" and p.path.split(".")[1] in self.effects]
-        return any(self.arm.value(p.path) in (p.low, p.high) for p in paths)
+        """Whether the size of one of its effects ran to the end of its range: none explains the data."""
+        return sizes_at_bound(self.arm, self.parameters, self.effects)
 
 
 #: Hypotheses by their effects, whose order does not count.

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibration import Calibration
+from flexarm_env.identify.calibrate.parameters import FitParameters
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.error_measure import Score, score
 
@@ -34,13 +36,8 @@ class Model:
 
     @property
     def at_bound(self) -> bool:
-        """Whether a parameter of its effects ran to the end of its range: no size of the effect explains the data."""
-        for parameter in self.calibration.parameters:
-            section, name, *_ = parameter.path.split(".")
-            inside = self.arm.value(parameter.path) not in (parameter.low, parameter.high)
-            if section == "effects" and name in self.effects and not inside:
-                return True
-        return False
+        """Whether the size of one of its effects ran to the end of its range: none explains the data."""
+        return sizes_at_bound(self.arm, self.calibration.parameters, self.effects)
 
     def error_over(self, other: Model) -> float:
         """Compute the ratio of its errors in windows to those of another, on the fitted or the held-out part, the larger one."""
@@ -55,6 +52,24 @@ class Model:
         fitted, held = dataset.readings(held_out=False), dataset.readings(held_out=True)
         errors = fitted * self.fitted_score.windows**2 + held * self.score.windows**2
         return errors + len(self.calibration.parameters) * math.log(fitted + held)
+
+
+def sizes_at_bound(arm: Arm, parameters: FitParameters, effects: Sequence[str]) -> bool:
+    """Whether the size of one of some effects is at the end of its range.
+
+    What has no null may end there, such as the damping of a stop that has none.
+
+    Args:
+        arm: the calibrated arm.
+        parameters: of its values.
+        effects: names.
+    """
+    for parameter in parameters:
+        section, name, *keys = parameter.path.split(".")
+        is_size = section == "effects" and name in effects and arm.known[name].parameters[keys[0]].null is not None
+        if is_size and arm.value(parameter.path) in (parameter.low, parameter.high):
+            return True
+    return False
 
 
 def judge(effects: tuple[str, ...], calibration: Calibration, dataset: Dataset) -> Model:

@@ -90,6 +90,10 @@ class Search:
                 return trace
         if not self.is_late:
             models = others(self.calibrator, self.criteria, models, trials, trace.model, more)
+        if not trace.accepted and len(trace.chain) == 1 and not self.is_late:
+            trace = self._combine_at_once(trace, models, more)
+            if trace.accepted:
+                return trace
         if self.is_late:
             trace = self._stop(trace, _beside("every promising effect was calibrated", trace))
         elif trace.accepted:
@@ -103,7 +107,7 @@ class Search:
         return self._accept(trace, possible) if possible else trace
 
     def ask_forecasts(self, trace: Trace, progress: Progress) -> Trace:
-        """Accept the model that forecasts ask for in place of another, if it alone explains the data, or removes enough more.
+        """Accept the model that forecasts ask for in place of another, if it explains the data, or removes most of the rest.
 
         Errors over a second or more show what is missing where one effect is. Where several hide each other, forecasts over a
         fraction of that are less misled.
@@ -118,8 +122,12 @@ class Search:
             return trace
         enough = now.score.excess - least if is_explained else np.inf
 
+        most = (1.0 - self.calibrator.settings.selecting.least_total_gain) * now.score.excess
+
         def is_better(found: Model) -> bool:
-            return found.score.excess <= enough and self.criteria.is_fully_explained(found)
+            is_worthwhile = self.criteria.is_worthwhile(now, found, lambda s: s.excess) and self.criteria.explains(found)
+            removes_most = is_worthwhile and found.score.excess <= most
+            return found.score.excess <= enough and (removes_most or self.criteria.is_fully_explained(found))
 
         calibrated = frozenset(trace.effects if is_explained else ())
         found = ForecastSearch(self.calibrator).propose(trace.steps[0].model, calibrated, is_better, progress)

@@ -88,8 +88,7 @@ def baseline(found: Calibration, dataset: Dataset, levels: Sequence[float] | Non
     for level in settings.process_noise.screening if levels is None else levels:
         torque_noise = max(level * scale, own)
         objective = objective_at(found.arm, dataset, found.parameters, torque_noise, reduced=True).weighted_by(found.arm)
-        visible = np.sqrt(np.mean((objective.weights.sigma / dataset.noise) ** 2)) > settings.screening.visible
-        if torque_noise == own or visible:
+        if torque_noise == own or objective.excess_factor > settings.screening.visible:
             break
     return baseline_of(objective, found.solution.steps.now)
 
@@ -121,17 +120,31 @@ def signatures(base: Baseline, effect: str) -> list[Signature]:
     """
     numbers = base.numbers
     starts = starts_of(base.arm, effect, base.objective.dataset)
-    if len(starts) <= numbers.few_starts and base.arm.known[effect].fitted:
-        starts += [sized(base.arm, effect, starts[0], share) for share in numbers.small]
-    secants = sorted((_secant(base, effect, start) for start in starts), key=lambda s: -s.explained)
+    secants = [secant for start in starts for secant in _secants(base, effect, start)]
+    secants.sort(key=lambda s: -s.explained)
     best = max((_at_its_size(base, s) for s in secants[: numbers.starts_scanned]), key=lambda s: s.explained)
     return [best] if best.explained > numbers.least_explained else []
 
 
-def _secant(base: Baseline, effect: str, start: dict[str, float]) -> Signature:
+def _secants(base: Baseline, effect: str, start: dict[str, float]) -> list[Signature]:
+    """Extrapolate from a start, and from smaller sizes as long as the change is out of proportion to the residual.
+
+    Where friction holds an arm that moves freely, or a delay exceeds a period, the change says nothing of small sizes.
+    """
+    numbers, left = base.numbers, base.unexplained(base.residual)
+    found: list[Signature] = []
+    for _ in range(numbers.shrinks):
+        change = base.unexplained(base.change(effect, start))
+        found.append(_secant(base, effect, start, change, left))
+        size, target = float(np.linalg.norm(change)), float(np.linalg.norm(left))
+        if target >= numbers.in_proportion * size or not base.arm.known[effect].fitted:
+            break
+        start = sized(base.arm, effect, start, target / size)
+    return found
+
+
+def _secant(base: Baseline, effect: str, start: dict[str, float], change: Floats, left: Floats) -> Signature:
     """Extrapolate an effect's explained share, as if its change of the residual grew in proportion to its size."""
-    change = base.unexplained(base.change(effect, start))
-    left = base.unexplained(base.residual)
     power, total = float(change @ change), float(left @ left)
     if power <= base.numbers.least_change * total:
         return Signature(effect, start, 0.0, 0.0)

@@ -53,7 +53,7 @@ def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now:
     rivals.sort(key=rank)
     rivals[0] = _polish_near(calibrator, rivals[0], now)
     first = rivals[0]
-    better = criteria.replaces(first, now, rank)
+    better = criteria.replaces(*_on_all_data(calibrator, first, now), rank)
     if replace(now, effects=(effect,)).at_bound:  # no size of it explains the data
         better = better or measure(first.score) <= criteria.equivalence_level(now.score, measure)
     every = {effect: now} | {m.effects[0]: m for m in rivals}
@@ -61,6 +61,19 @@ def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now:
     level = criteria.equivalence_level(every[taken].score, measure)
     alike = {name: m for name, m in every.items() if name != taken and measure(m.score) <= level}
     return RivalComparison(taken, every[taken], alike, frozenset(every), untried)
+
+
+def _on_all_data(calibrator: Calibrator, rival: Model, now: Model) -> tuple[Model, Model]:
+    """Calibrate both models on all of the data where both are close to the noise, as the criterion that ranks them there assumes.
+
+    What was held out may hold the motion that tells them apart; without it, the right one may only be the less certain one.
+    """
+    if max(rival.score.windows, now.score.windows) >= calibrator.settings.errors.close:
+        return rival, now
+    with calibrator.workers.threads():
+        again = [calibrator.calibrate_on_all_data(model.calibration) for model in (rival, now)]
+    one, other = (judge(m.effects, found, calibrator.dataset) for m, found in zip((rival, now), again, strict=True))
+    return one, other
 
 
 def _polish_near(calibrator: Calibrator, rival: Model, now: Model) -> Model:

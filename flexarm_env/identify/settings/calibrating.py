@@ -28,7 +28,12 @@ class Parameters:
         "Narrowest difference of an effect's value, over its size.",
         "stick-slip makes smaller differences of an effect look like noise; no sweep recorded",
     )
-    least_size: float = tuned(0.3, "Size of an effect below which differences shrink no further, in typical sizes.")
+    smallest_size: float = tuned(
+        1e-4,
+        "Size of an effect below which the narrowest difference shrinks no further, in typical sizes.",
+        "friction of 2e-5 of the typical one was lost behind differences of 3e-3 of it; no sweep recorded",
+    )
+    least_size: float = tuned(0.3, "Size of an effect below which the widest difference shrinks no further, in typical sizes.")
     widest_step: float = tuned(0.3, "Widest difference, over a constant's prior or an effect's size.")
 
 

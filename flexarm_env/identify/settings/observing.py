@@ -36,10 +36,10 @@ class ProcessNoise:
         "practice recordings with Stribeck friction: hub inertia 1.4 % off; other levels were tried with earlier steps only",
     )
     screening: tuple[float, ...] = tuned(
-        (0.01, 0.003, 0.001, 0.0003),
+        (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6),
         "Candidates are screened at the first level at which errors exceed `screening.visible`: more feedback hides a small "
         "steady torque, less makes the errors of a model that is far off rough.",
-        "at 0.01 alone small steady torques hid; the lower levels were added for them, no sweep recorded",
+        "at 0.01 alone small steady torques hid, and down to 3e-4 friction of 1e-5 of the drive's torque; no sweep recorded",
     )
     windows: tuple[float, ...] = tuned(
         (1e-4, 2e-3, 2e-2),

@@ -99,6 +99,11 @@ class Thinning:
         "Error that the mean command makes in a signal, rms over its noise in windows, that is left.",
         "raises an error of 1 to 1.02, a fifth of what counts as nothing left (`errors.nothing_left`)",
     )
+    frictions: tuple[float, ...] = tuned(
+        (0.7, 1.0, 1.2, 1.4),
+        "Shares of Coulomb friction with which that error must not be larger.",
+        "a hub held by 1.1 times its model's friction under a noisy command: 0.04 with 0.6 to 1.0 of it, 2 to 3 from 1.1 on",
+    )
     fewest_samples: int = tuned(
         500, "Fewest samples that a thinned recording keeps.", "two seconds at the longest step; no sweep recorded", "samples"
     )

@@ -23,9 +23,14 @@ class Screening:
     least_change: float = tuned(1e-12, "A change of the residual below this share is none.", "guards a division")
     starts_scanned: int = tuned(2, "Starts whose size is scanned.")
     sizes: tuple[float, ...] = tuned((0.15, 0.4, 0.75, 1.2, 2.5), "Factors of the size that are scanned.")
-    few_starts: int = tuned(2, "Effects with no more starts are tried at small sizes, too.", SMALL_EFFECTS)
+    in_proportion: float = tuned(
+        0.3,
+        "Residual over the change that an effect makes: below it the effect is tried at a smaller size, too.",
+        "a size within three of the right one is reached by the secant; no sweep recorded",
+    )
+    shrinks: int = tuned(4, "Sizes of a start that are tried at most.", "friction of 1e-5 of what holds an arm takes three")
     small: tuple[float, ...] = tuned(
-        (0.03, 0.003), "Shares of the first start's size that are tried where starts are few.", SMALL_EFFECTS
+        (0.03, 0.003), "Shares of the first start's size that brief calibrations try.", SMALL_EFFECTS
     )
     linear: float = tuned(0.7, "Share of a secant's promise that counts as proportional growth.")
     largest_factor: float = tuned(
