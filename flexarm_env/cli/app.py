@@ -160,10 +160,11 @@ def add(
     json: Json = None,
 ) -> None:
     """Add one effect to an arm and refit: error before, refitted, after. Exit code 1 if it does not fall."""
-    own = [effect] if ".py:" in effect else []
+    from flexarm_env.effects.catalogue import is_of_file, load_effect
+
+    own = [effect] if is_of_file(effect) else []
     model, runs = arguments.Given(recordings, arm, columns, [*(effects or []), *own]).load(json, save=save)
     from flexarm_env.cli.answers import hand_out
-    from flexarm_env.effects.catalogue import load_effect
     from flexarm_env.terminal import identification, plain_data, tables
 
     arguments.show_faults(identification.faults(model, runs))
