@@ -44,7 +44,7 @@ def inspect(
     report: Report = None,
     json: Json = None,
 ) -> None:
-    """Look at recordings first: signals, faults of sensors and units, and what they can show. Exit code 1 for a fault."""
+    """Look at recordings first: signals, faults, and what they can show. Exit code 1 for a fault, or too little."""
     given = arguments.Given(recordings, arm, columns, effects)
     from flexarm_env.cli.answers import hand_out, inspect_restart
     from flexarm_env.recordings.clock import RestartError
@@ -64,7 +64,7 @@ def inspect(
         from flexarm_env.terminal.inspection_report import write_inspection
 
         write_inspection(report, found, given.command_line("inspect") | provenance("inspect", arm, runs, None))
-    if found.inspection.faults:
+    if not found.is_sound:
         raise typer.Exit(1)
 
 
