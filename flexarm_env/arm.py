@@ -149,7 +149,7 @@ class Arm(Shown):
         for key, value in parameters.items():
             if key not in effect.parameters:
                 raise InputError(f"effect '{name}' has no parameter '{key}'{did_you_mean(key, effect.parameters)}")
-            values[key] = check_bounds(f"effects.{name}.{key}", float(value), effect.parameters[key])
+            values[key] = check_bounds(f"effects.{name}.{key}", float(value), effect.parameters[key].under(self.input))
         self._check_needs(effect)
         return replace(self, effects={**self.effects, name: values})
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -68,6 +68,22 @@ class Parameter:
         """
         return scales.get("command" if self.of_command else self.unit, 1.0)
 
+    def under(self, command: str) -> Parameter:
+        """Fill in the unit of a command, which the catalogue leaves open.
+
+        Args:
+            command: kind of the drive's command.
+
+        Example:
+            >>> [Parameter(unit, 0.0, 1.0, 0.1, of_command=True).under("current").unit for unit in ("", "1/s")]
+            ['A', 'A/s']
+        """
+        if not self.of_command:
+            return self
+        unit = INPUTS[command]
+        filled = unit + self.unit.removeprefix("1") if self.unit.startswith("1/") else self.unit or unit
+        return replace(self, unit=filled)
+
 
 TABLE = "thesis Table A.1"
 #: Tilt of an axis that is level, about which gravity acts in full.
@@ -115,7 +131,16 @@ DRIVE = {
     "largest_duty": Parameter("", 1e-3, 1.0, 1.0, spread=0.0, meaning="share of the supply that the servo gives out at most"),
     "current_limit": Parameter("A", 0.0, 1e6, 0.0, spread=0.0, meaning="of the servo's firmware; 0: none"),
     "enabled": Parameter("", 0.0, 1.0, 1.0, spread=0.0, meaning="1: the drive is on; 0: the motor's circuit is open"),
-    "limit": Parameter("", 0.0, 1e6, 5.0, spread=0.0, meaning="largest command, in A, V, Nm or rad", source="thesis section 4.2"),
+    "limit": Parameter(
+        "",
+        0.0,
+        1e6,
+        5.0,
+        spread=0.0,
+        meaning="largest command, in A, V, Nm or rad",
+        source="thesis section 4.2",
+        of_command=True,
+    ),
     "torque_noise": Parameter(
         "N*m", 0.0, 1e4, 0.0, spread=0.0, meaning="unmodelled disturbance torque at the hub, standard deviation per sample"
     ),

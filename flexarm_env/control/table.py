@@ -68,6 +68,26 @@ def law_table(law: ControlLaw, input_kind: str) -> dict[str, Any]:
     return table
 
 
+def odd_units(law: ControlLaw, conditions: Mapping[str, float], input_kind: str) -> str:
+    """Describe the first conditions of units that do not make a gain's; "" for none. A factor without a unit is one of any.
+
+    Args:
+        law: with the names of conditions.
+        conditions: of a recording.
+        input_kind: of the command.
+    """
+    for one in law.feedback:
+        for name, gain in one.gains.items():
+            named = {factor: conditions[factor] for factor in gain if isinstance(factor, str) and factor in conditions}
+            factors = [named.get(factor, 0.0) if isinstance(factor, str) else factor for factor in gain]
+            stated = [factor.unit for factor in factors if isinstance(factor, units.BaseValue) and factor.unit]
+            target = _gain_unit(name, one.signal, INPUTS[input_kind])
+            if named and len(stated) == len(gain) and not units.product_converts(stated, target):
+                listed = " × ".join(f"{key} = {value:g} {getattr(value, 'unit', '')}".rstrip() for key, value in named.items())
+                return f"{listed} is controller.{one.signal}.{name}, which is in {target}"
+    return ""
+
+
 def _feedback(signal: str, given: Any, unit: str) -> Feedback:
     where = f"controller.{signal}"
     if not isinstance(given, Mapping):

@@ -10,7 +10,7 @@ from flexarm_env import units
 from flexarm_env.errors import InputError
 from flexarm_env.files import read_toml
 from flexarm_env.recordings.checks import check_conditions
-from flexarm_env.recordings.conditions import CONDITIONS
+from flexarm_env.recordings.conditions import CONDITIONS, unit_of
 from flexarm_env.recordings.messages import file_error
 
 TABLE = "conditions"
@@ -37,7 +37,8 @@ def conditions_beside(path: Path, given: Mapping[str, float]) -> tuple[dict[str,
         raise file_error(path, f"condition '{twice[0]}' comes twice, in the file and in {beside.name}; keep one of the two")
     if not stated:
         return {}, ()
-    return stated, (f"{beside.name} states {', '.join(f'{name} = {value:g}' for name, value in stated.items())}",)
+    listed = ", ".join(f"{name} = {value:g} {unit_of(name, value)}".rstrip() for name, value in stated.items())
+    return stated, (f"{beside.name} states {listed}",)
 
 
 def sidecar_of(path: Path) -> Path | None:

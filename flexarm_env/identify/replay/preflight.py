@@ -10,6 +10,7 @@ from flexarm_env.experiments.stated import PAYLOAD
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.settings import Preparation
+from flexarm_env.parameters import SECTIONS
 
 
 @dataclass(frozen=True)
@@ -78,4 +79,5 @@ def _stated_note(path: str, value: float) -> str:
     """Describe one condition that a recording states of the machine."""
     if path == PAYLOAD:
         return f"the arm carries the {value:g} kg that the recording states as its payload"
-    return f"{path} is {value:g}, as the recording states"
+    section, key = path.split(".")
+    return f"{path} is {value:g} {SECTIONS[section][key].unit}".rstrip() + ", as the recording states"
