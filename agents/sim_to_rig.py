@@ -30,7 +30,7 @@ from agents.rig_controllers import NOMINAL, RETUNED, controllers_of, retune, tun
 from agents.rig_report import report_of, verdict_of
 from agents.train import place_of
 from flexarm_env import Arm, InputError, Recording, __version__, diagnose
-from flexarm_env.files import write_whole
+from flexarm_env.files import read_json, write_whole
 from flexarm_env.tasks import TASKS
 from flexarm_env.terminal.outputs import make_folder
 from flexarm_env.terminal.program import Program
@@ -149,7 +149,7 @@ def main(arguments: Sequence[str]) -> int:
         **origin_of(f"python -m agents.sim_to_rig --count {asked.count}", FIRST_SEED),
         "episodes": asked.count,
         "seconds": round(time.perf_counter() - began, 1),
-        "diagnoses": {case: json.loads((asked.save / "arms" / f"{case}.json").read_text("utf-8")) for case in there},
+        "diagnoses": {case: read_json(asked.save / "arms" / f"{case}.json", "delete it, and add --make") for case in there},
         "not_made": [case for case in CASES if case not in there],
         "cases": {case: verdict_of(found) for case, found in values.items()},
     }

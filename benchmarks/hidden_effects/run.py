@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 import flexarm_env
 from flexarm_env import Arm, Recording, diagnose
-from flexarm_env.files import write_whole
+from flexarm_env.files import read_json, write_whole
 from flexarm_env.identify.workers import Workers
 from flexarm_env.terminal.provenance import commit
 
@@ -39,7 +39,7 @@ def by_diagnosis(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
 def _answer(case: Case, method: Method, folder: Path) -> dict[str, Any]:
     path = folder / f"{case.name}.json"
     if path.exists():
-        kept: dict[str, Any] = json.loads(path.read_text())
+        kept = read_json(path, "delete it, and it is made anew")
         if kept["case"].items() >= json.loads(json.dumps(case.as_json())).items():
             return kept
     posed, arm, recordings = case.pose()

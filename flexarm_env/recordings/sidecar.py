@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -51,7 +52,7 @@ def sidecar_of(path: Path) -> Path | None:
         InputError: for a file of that name that has neither conditions nor an arm nor a column map.
     """
     beside = path.with_suffix(".toml")
-    if beside == path or not beside.is_file():
+    if beside == path or beside.is_dir() or not os.path.lexists(beside):  # a link to nowhere is no absence
         return None
     table = read_toml(beside)
     if any(key in table for key in _OTHERS):

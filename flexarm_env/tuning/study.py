@@ -118,5 +118,5 @@ def _begins_as_journal(path: Path) -> bool:
         line = file.readline(LONGEST_LINE)
     try:
         return not line or "op_code" in json.loads(line)
-    except ValueError:
+    except (ValueError, TypeError, RecursionError):
         return False
