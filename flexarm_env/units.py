@@ -188,8 +188,8 @@ def is_quantity(text: str) -> bool:
     return bool(match and (not match[2] or (len(match[2]) <= _LONGEST and _UNIT.fullmatch(match[2]))))
 
 
-def split(text: str) -> tuple[float, str]:
-    """Split a quantity into number and unit, "" for none.
+def split(text: str, target: str = "kg") -> tuple[float, str]:
+    """Split a quantity into number and unit, "" for none; the target serves the message alone.
 
     Raises:
         InputError: for a text of another form, or a number that is not finite.
@@ -200,7 +200,7 @@ def split(text: str) -> tuple[float, str]:
     """
     match = _QUANTITY.fullmatch(text.strip())
     if match is None or not math.isfinite(float(match[1])):
-        raise InputError(f"{text[:_LONGEST]!r} is not a number with a unit; write for example '0.3 kg'")
+        raise InputError(f"{text[:_LONGEST]!r} is not a number with a unit; write for example '{f'0.3 {target}'.rstrip()}'")
     return float(match[1]), match[2] or ""
 
 
@@ -220,7 +220,7 @@ def quantity(value: str | float, target: str) -> float:
     """
     if not isinstance(value, str):
         return as_float(value)
-    number, unit = split(value)
+    number, unit = split(value, target)
     if unit and not target:
         bare = number / 100.0 if unit in _PERCENT else number
         raise InputError(f"unit '{unit}' on a bare number; write {bare:g}")

@@ -15,6 +15,8 @@ from flexarm_env.sensors import known_sensors
 
 _GAINS = ("proportional", "integral", "derivative")
 _TIMES = ("filter", "derivative_filter", "derivative_span")
+#: Largest times and rates: a law keeps the readings and commands of a time. Largest commands as of a drive.
+_LARGEST = {"s": 10.0, "Hz": 1e6}
 _NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
@@ -141,8 +143,8 @@ def _number(where: str, given: Any, unit: str) -> float:
         number = units.quantity(given, unit)
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
-    if not (math.isfinite(number) and number >= 0.0):
-        raise InputError(f"{where} is {number}; write a number of {unit} that is not below 0")
+    if not 0.0 <= number <= _LARGEST.get(unit, 1e6):
+        raise InputError(f"{where} = {number:g} {unit} is out of bounds: allowed are 0 to {_LARGEST.get(unit, 1e6):g} {unit}")
     return number
 
 
