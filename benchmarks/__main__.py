@@ -12,6 +12,7 @@ from typing import Any
 from benchmarks import environments, faults, jacobian, plant, report, start
 from benchmarks.diagnosis import measure as diagnosis
 from benchmarks.diagnosis.cases import CASES
+from flexarm_env.terminal.outputs import make_folder
 from flexarm_env.terminal.program import Program
 
 PARTS = {"plant": plant, "jacobian": jacobian, "start": start, "diagnosis": diagnosis, "environments": environments}
@@ -34,6 +35,9 @@ def main(arguments: Sequence[str]) -> None:
     if asked.cases and not asked.diagnosis:
         parser.error("--cases needs --diagnosis")
     names = [name for name in PARTS if getattr(asked, name)] or ([] if asked.faults else list(PARTS))
+    output = asked.output or (OUTPUT if len(names) == len(PARTS) else None)
+    if output is not None:
+        make_folder(output.parent, output.name)
     began = time.perf_counter()
 
     def say(text: str) -> None:
@@ -45,7 +49,6 @@ def main(arguments: Sequence[str]) -> None:
     if asked.faults:
         found |= faults.measure(say, asked.seed, asked.count)
     report.show(found)
-    output = asked.output or (OUTPUT if len(names) == len(PARTS) else None)
     if output is not None:
         report.write(output, found, time.perf_counter() - began)
         say(f"figures are in {output}")

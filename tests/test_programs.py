@@ -13,7 +13,8 @@ import pytest
 from documents import PROJECT
 from processes import LISTED, command_line, descendants, is_alive, wait_for
 
-from flexarm_env.terminal.program import Program
+from flexarm_env.errors import InputError
+from flexarm_env.terminal.program import LONGEST_LINE, Program
 
 MODULES = sorted(
     ".".join(file.relative_to(PROJECT).with_suffix("").parts)
@@ -62,6 +63,16 @@ def swallow(error: type[Exception]) -> None:
 def test_ctrl_c_that_became_another_error_is_ctrl_c(error, capsys):
     assert Program("it").run(lambda arguments: swallow(error), []) == 130
     assert capsys.readouterr().err == "it: stopped\n"
+
+
+def test_a_line_stays_one_of_bounded_length(capsys):
+    def fail(arguments):
+        raise InputError(f"no arm '{100_000 * 'x'}\nthere\u202e'")
+
+    assert Program("it").run(fail, []) == 2
+    err = capsys.readouterr().err
+    assert (err.count("\n"), len(err) <= LONGEST_LINE + 10) == (1, True)
+    assert err.rstrip("\n").isprintable()
 
 
 def test_an_error_without_ctrl_c_is_none(capsys):

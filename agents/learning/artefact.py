@@ -71,7 +71,9 @@ class Artefact:
             return cls(read_table(json.loads(text["plan"])), arm, weights, json.loads(text["run"]))
         except InputError:
             raise
-        except (SafetensorError, OSError, KeyError, ValueError, TypeError, AttributeError, RecursionError) as error:
+        except OSError:
+            raise InputError(f"{path}: cannot be read; check its permissions") from None
+        except (SafetensorError, KeyError, ValueError, TypeError, AttributeError, RecursionError) as error:
             raise InputError(f"{path} is no policy ({error}); python -m agents.train makes one") from None
 
     def agent(self, interval: float = 1.0 / RATE) -> LearnedPolicy:

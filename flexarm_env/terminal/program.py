@@ -19,6 +19,8 @@ from flexarm_env.errors import InputError
 #: As shells count: 128 and the number of the signal.
 DONE, NO, BAD_INPUT, STOPPED, TERMINATED = 0, 1, 2, 130, 143
 
+#: Characters of a line; the input that it repeats may be of any length.
+LONGEST_LINE = 2000
 Arguments = Sequence[str] | None
 _WITHOUT_VALUE = re.compile(r"(--[\w-]+)=\s*")
 
@@ -78,6 +80,7 @@ class Program:
     def complain(self, line: str, code: int = BAD_INPUT) -> int:
         """Write one line on stderr; return the exit code."""
         text = " ".join("".join(c if c.isprintable() else " " for c in line).split())
+        text = text if len(text) <= LONGEST_LINE else f"{text[: LONGEST_LINE - 3]}..."
         print(f"{self.name}: {text}" if self.name else text, file=sys.stderr)
         return code
 
