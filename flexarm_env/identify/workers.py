@@ -17,6 +17,7 @@ from typing import Any, Literal
 from joblib import Parallel, delayed, parallel_config
 from joblib.externals.loky.backend import resource_tracker as loky_tracker
 
+from flexarm_env.errors import InputError
 from flexarm_env.identify.deadline import Deadline
 
 #: A function and its positional arguments. Both must pickle.
@@ -38,6 +39,10 @@ class Workers:
     jobs: int = 1
     deadline: Deadline = field(default_factory=Deadline)
     batch: int | Literal["auto"] = "auto"
+
+    def __post_init__(self) -> None:
+        if isinstance(self.jobs, bool) or not isinstance(self.jobs, int) or self.jobs < 1:
+            raise InputError(f"jobs is {self.jobs!r}; give a whole number from 1 up")
 
     def map(self, tasks: Sequence[Task]) -> Iterator[Any]:
         """Yield the results of tasks in their order, from processes; a single task runs here, in threads."""

@@ -262,7 +262,10 @@ class Recording(Shown):
             ['pulse', 'square']
         """
         layout = None if columns is None else load_columns(columns)
-        files = recording_files([paths] if isinstance(paths, (str, os.PathLike)) else paths, layout)
+        named = [paths] if isinstance(paths, (str, os.PathLike)) else list(paths)
+        if "" in named:
+            raise InputError("a path is empty, which would be this folder; name a file, or '.'")
+        files = recording_files(named, layout)
         recordings = [one for file in files for one in cls.read_each(file, layout, calibration, require_signal)]
         check_episodes(len(recordings), layout)
         return with_distinct_names(recordings)
