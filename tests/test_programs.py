@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
@@ -63,6 +64,24 @@ def swallow(error: type[Exception]) -> None:
 def test_ctrl_c_that_became_another_error_is_ctrl_c(error, capsys):
     assert Program("it").run(lambda arguments: swallow(error), []) == 130
     assert capsys.readouterr().err == "it: stopped\n"
+
+
+def test_a_thread_that_ctrl_c_broke_off_is_silent(capsys):
+    def stop(arguments):
+        def end():
+            raise KeyError("a task that is no longer there")
+
+        try:
+            signal.raise_signal(signal.SIGINT)
+        finally:
+            thread = threading.Thread(target=end)
+            thread.start()
+            thread.join()
+
+    before = threading.excepthook
+    assert Program("it").run(stop, []) == 130
+    assert capsys.readouterr().err == "it: stopped\n"
+    assert threading.excepthook is before
 
 
 def test_a_line_stays_one_of_bounded_length(capsys):

@@ -50,6 +50,8 @@ class Program:
                 return self.run(main, arguments)
             code = self.run(main, sys.argv[1:])
             if code in (STOPPED, TERMINATED):  # who cannot wait for the interpreter's end presses Ctrl-C again
+                sys.unraisablehook = lambda error: None
+                threading.excepthook = lambda error: None
                 for number in (signal.SIGINT, signal.SIGTERM):
                     signal.signal(number, lambda number, frame: os._exit(code))
             return code
@@ -58,9 +60,11 @@ class Program:
 
     def run(self, main: Callable[[Sequence[str]], int | None], arguments: Sequence[str]) -> int:
         """Run a main function; return its exit code. With FLEXARM_TRACEBACK=1 errors show their traceback."""
-        for stream in (sys.stdout, sys.stderr):
-            if hasattr(stream, "reconfigure"):
-                stream.reconfigure(errors="replace")
+        for name in ("stdout", "stderr"):
+            if getattr(sys, name) is None:  # closed by the shell; a file that is opened now takes its number
+                setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w", encoding="utf-8"))
+            if hasattr(getattr(sys, name), "reconfigure"):
+                getattr(sys, name).reconfigure(errors="replace")
         if os.environ.get("FLEXARM_TRACEBACK"):
             return main(arguments) or DONE
         came: list[int] = []
@@ -142,15 +146,16 @@ def _stops(came: list[int]) -> Iterator[None]:
         if number == signal.SIGINT or len(came) == 1:
             raise Stop
 
-    def report(unraisable: Any) -> None:
-        if not came:
-            before(unraisable)
+    def unless_stopped(report: Callable[[Any], Any]) -> Callable[[Any], None]:
+        return lambda error: None if came else report(error)
 
     with ExitStack() as restored:
         if threading.current_thread() is threading.main_thread():
             for number in (signal.SIGINT, signal.SIGTERM):
                 if signal.getsignal(number) not in (signal.SIG_IGN, None):
                     restored.callback(signal.signal, number, signal.signal(number, stop))
-        before, sys.unraisablehook = sys.unraisablehook, report
-        restored.callback(setattr, sys, "unraisablehook", before)
+        # Errors of callbacks and of threads that the stop has broken off are reported through these.
+        for module, hook in ((sys, "unraisablehook"), (threading, "excepthook")):
+            restored.callback(setattr, module, hook, getattr(module, hook))
+            setattr(module, hook, unless_stopped(getattr(module, hook)))
         yield
