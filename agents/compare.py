@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from joblib import Parallel, delayed
 
 from agents.compare_report import report_of
 from agents.curves import draw_curves
@@ -21,8 +20,10 @@ from agents.results import origin_of, write_results
 from agents.train import FOLDER
 from flexarm_env import Arm, InputError
 from flexarm_env.controllers import CONTROLLERS
+from flexarm_env.identify.workers import Workers
 from flexarm_env.tasks import TASKS
 from flexarm_env.terminal.outputs import make_folder
+from flexarm_env.terminal.program import Program
 from flexarm_env.trials.measures import MEASURES, measure
 from flexarm_env.trials.rollout import roll_out
 from flexarm_env.trials.sets import FIRST_SEED, SETS
@@ -65,9 +66,7 @@ def compare(policies: dict[str, list[Path]], arm: str, count: int, jobs: int) ->
         agents = dict.fromkeys(CONTROLLERS) | {name: None for name in policies if tasks[name] == task}
         work |= {(task, arms, name): policies.get(name, name) for arms in SETS for name in agents}
     began, values = time.perf_counter(), {}
-    running = Parallel(n_jobs=jobs, return_as="generator")(
-        delayed(evaluate_any)(task, arms, who, arm, count) for (task, arms, _), who in work.items()
-    )
+    running = Workers(jobs).spread([(evaluate_any, (task, arms, who, arm, count)) for (task, arms, _), who in work.items()])
     for key, found in zip(work, running, strict=True):
         values[key] = found
         done = f"{len(values)} of {len(work)}: {' · '.join(key)}"
@@ -102,7 +101,8 @@ def about(policies: dict[str, list[Path]]) -> dict[str, Any]:
     return found
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+@Program()
+def main(arguments: Sequence[str]) -> int:
     """Compare, write JSON, Markdown and the learning curves, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.compare", description=__doc__)
     parser.add_argument("--policies", type=Path, default=FOLDER, help="their folder; results/policies/weights by default")
@@ -111,17 +111,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--jobs", type=int, default=2, help="processes; 2 by default")
     parser.add_argument("--save", type=Path, default=FOLDER.parent, help="folder of the results; results/policies by default")
     asked = parser.parse_args(arguments)
-    try:
-        if asked.count < 1 or asked.jobs < 1:
-            raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
-        make_folder(asked.save, "policies.json", "policies.md", "curves.png")
-        policies = find_policies(asked.policies)
-        Arm.load(asked.arm)
-        began = time.perf_counter()
-        found = compare(policies, asked.arm, asked.count, asked.jobs)
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
+    if asked.count < 1 or asked.jobs < 1:
+        raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
+    make_folder(asked.save, "policies.json", "policies.md", "curves.png")
+    policies = find_policies(asked.policies)
+    Arm.load(asked.arm)
+    began = time.perf_counter()
+    found = compare(policies, asked.arm, asked.count, asked.jobs)
     result = {
         **origin_of(f"python -m agents.compare --arm {asked.arm} --count {asked.count}", FIRST_SEED),
         "seconds": round(time.perf_counter() - began, 1),

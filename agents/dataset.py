@@ -21,6 +21,7 @@ from flexarm_env import Arm, InputError
 from flexarm_env.controllers import make_controller
 from flexarm_env.errors import did_you_mean
 from flexarm_env.tasks import CONTROL_RATE, TASKS
+from flexarm_env.terminal.program import Program
 from flexarm_env.trials.rollout import Agent
 
 #: What Minari needs beside itself, as `pip install "minari[hdf5,create]"` brings it.
@@ -105,7 +106,8 @@ def missing() -> list[str]:
     return [package for package in NEEDED if importlib.util.find_spec(package) is None]
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+@Program(stopped="stopped; the same command goes on")
+def main(arguments: Sequence[str]) -> int:
     """Make data sets, skip those that exist, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.dataset", description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help="data sets, as --list shows them; all by default")
@@ -115,15 +117,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if asked.list:
         print("\n".join(DATASETS))
         return 0
-    try:
-        for name in asked.names:
-            if name not in DATASETS:
-                raise InputError(f"no data set '{name}'{did_you_mean(name, DATASETS)}")
-        if asked.episodes < 1:
-            raise InputError(f"--episodes {asked.episodes}; give a whole number from 1 up")
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
+    for name in asked.names:
+        if name not in DATASETS:
+            raise InputError(f"no data set '{name}'{did_you_mean(name, DATASETS)}")
+    if asked.episodes < 1:
+        raise InputError(f"--episodes {asked.episodes}; give a whole number from 1 up")
     names = asked.names or list(DATASETS)
     if lacking := missing():
         skipped = f"{len(names)} data set{'s' if len(names) > 1 else ''}"

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from joblib import Parallel, delayed
 
 from agents.report import table_of
 from agents.results import origin_of, write_results
@@ -18,8 +17,10 @@ from agents.statistics import mean_interval, paired_difference
 from flexarm_env import Arm, InputError
 from flexarm_env.controllers import CONTROLLERS, make_controller
 from flexarm_env.errors import did_you_mean
+from flexarm_env.identify.workers import Workers
 from flexarm_env.tasks import TASKS
 from flexarm_env.terminal.outputs import make_folder
+from flexarm_env.terminal.program import Program
 from flexarm_env.trials.measures import MEASURES, measure
 from flexarm_env.trials.rollout import roll_out
 from flexarm_env.trials.score import worst_tenth
@@ -43,10 +44,10 @@ def evaluate_controller(
 def evaluate(names: Sequence[str], arm: str, count: int, jobs: int, first_seed: int = FIRST_SEED) -> dict[str, Any]:
     """Evaluate controllers on all tasks and sets: each measure's mean and interval, and its difference from PD's."""
     cells = [(task, arms, name) for task in TASKS for arms in SETS for name in names]
-    tasks = (delayed(evaluate_controller)(name, task, arms, arm, count, first_seed) for task, arms, name in cells)
+    tasks = [(evaluate_controller, (name, task, arms, arm, count, first_seed)) for task, arms, name in cells]
     found: dict[tuple[str, str, str], dict[str, np.ndarray]] = {}
     began = time.perf_counter()
-    for cell, values in zip(cells, Parallel(n_jobs=jobs, return_as="generator")(tasks), strict=True):
+    for cell, values in zip(cells, Workers(jobs).spread(tasks), strict=True):
         found[cell] = values
         done = f"{len(found)} of {len(cells)}: {' · '.join(cell)}"
         print(f"\r{time.perf_counter() - began:4.0f} s  {done:<60}", end="", file=sys.stderr, flush=True)
@@ -66,7 +67,8 @@ def _cell(found: Mapping[tuple[str, str, str], Mapping[str, np.ndarray]], task: 
     return cell
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+@Program()
+def main(arguments: Sequence[str]) -> int:
     """Evaluate, write the JSON file and the table, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.evaluate", description=__doc__)
     parser.add_argument("--controllers", nargs="+", default=list(CONTROLLERS), metavar="NAME", help="all by default")
@@ -78,17 +80,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--save", type=Path, default=FOLDER, help="folder of the results; results/baselines by default")
     asked = parser.parse_args(arguments)
-    try:
-        for name in asked.controllers:
-            if name not in CONTROLLERS:
-                raise InputError(f"no controller '{name}'{did_you_mean(name, CONTROLLERS)}")
-        if asked.count < 1 or asked.jobs < 1:
-            raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
-        Arm.load(asked.arm)
-        make_folder(asked.save, "baselines.json", "baselines.md")
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
+    for name in asked.controllers:
+        if name not in CONTROLLERS:
+            raise InputError(f"no controller '{name}'{did_you_mean(name, CONTROLLERS)}")
+    if asked.count < 1 or asked.jobs < 1:
+        raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
+    Arm.load(asked.arm)
+    make_folder(asked.save, "baselines.json", "baselines.md")
     began = time.perf_counter()
     first_seed = DEVELOPMENT_SEED if asked.development else FIRST_SEED
     cells = evaluate(asked.controllers, asked.arm, asked.count, asked.jobs, first_seed)

@@ -17,6 +17,7 @@ from flexarm_env.controllers import CONTROLLERS, make_controller
 from flexarm_env.env import FlexArmEnv
 from flexarm_env.errors import InputError
 from flexarm_env.terminal.outputs import make_folder
+from flexarm_env.terminal.program import Program
 from flexarm_env.trials.rollout import Agent
 from flexarm_env.trials.sets import FIRST_SEED
 
@@ -71,7 +72,8 @@ def film(names: tuple[str, str], env_id: str, arm: str, path: Path) -> None:
     both[0].save(path, save_all=True, append_images=both[1:], duration=1000 // RATE, loop=0, optimize=True)
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+@Program()
+def main(arguments: Sequence[str]) -> int:
     """Make the film of README.md, or another, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.film", description=__doc__)
     parser.add_argument("--controllers", nargs=2, default=["pd", "vibration_dual"], metavar="NAME", help="or files of policies")
@@ -79,14 +81,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--arm", default="thesis", help="name or file of the arm; another than a policy's own is allowed")
     parser.add_argument("--save", type=Path, default=FOLDER / "pd-dual.gif")
     asked = parser.parse_args(arguments)
-    try:
-        if asked.save.suffix != ".gif":
-            raise InputError(f"--save {asked.save}; name a .gif")
-        make_folder(asked.save.parent, asked.save.name)
-        film(tuple(asked.controllers), asked.env, asked.arm, asked.save)
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
+    if asked.save.suffix != ".gif":
+        raise InputError(f"--save {asked.save}; name a .gif")
+    make_folder(asked.save.parent, asked.save.name)
+    film(tuple(asked.controllers), asked.env, asked.arm, asked.save)
     return 0
 
 

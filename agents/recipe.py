@@ -15,7 +15,9 @@ import gymnasium as gym
 import numpy as np
 
 from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.files import write_whole
 from flexarm_env.terminal.outputs import make_folder
+from flexarm_env.terminal.program import Program
 from flexarm_env.trials.measures import TAIL
 from flexarm_env.trials.sets import FIRST_SEED, SEARCH_SEED
 from flexarm_env.wrappers import Shaped
@@ -111,28 +113,25 @@ def train(name: str, seed: int) -> dict[str, Any]:
     }
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+@Program(stopped="stopped; the same command goes on")
+def main(arguments: Sequence[str]) -> int:
     """Train what the folder lacks, report all that it holds, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.recipe", description=__doc__)
     parser.add_argument("recipes", nargs="*", default=["added"], help=f"of {', '.join(RECIPES)}; added by default")
     parser.add_argument("--seeds", type=int, nargs="+", default=[0, 1, 2, 3, 4], help="0 to 4 by default")
     parser.add_argument("--save", type=Path, default=FOLDER, help="folder of the results; results/recipe by default")
     asked = parser.parse_args(arguments)
-    try:
-        for name in asked.recipes:
-            if name not in RECIPES:
-                raise InputError(f"no recipe '{name}'{did_you_mean(name, RECIPES)}")
-        if min(asked.seeds) < 0:
-            raise InputError(f"--seeds {min(asked.seeds)}; give whole numbers from 0 up")
-        make_folder(asked.save)
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
+    for name in asked.recipes:
+        if name not in RECIPES:
+            raise InputError(f"no recipe '{name}'{did_you_mean(name, RECIPES)}")
+    if min(asked.seeds) < 0:
+        raise InputError(f"--seeds {min(asked.seeds)}; give whole numbers from 0 up")
+    make_folder(asked.save)
     for name in asked.recipes:
         for seed in asked.seeds:
             place = asked.save / f"{name}-{seed}.json"
             if not place.is_file():
-                place.write_text(json.dumps(train(name, seed)) + "\n", encoding="utf-8")
+                write_whole(place, json.dumps(train(name, seed)) + "\n")
                 print(f"\n{place}")
     from agents.recipe_report import write_report
 

@@ -15,7 +15,8 @@ from agents.learning.artefact import Artefact
 from agents.train import FOLDER as WEIGHTS
 from flexarm_env import Arm
 from flexarm_env.controllers import make_controller
-from flexarm_env.files import write_whole
+from flexarm_env.errors import InputError
+from flexarm_env.files import read_json, write_whole
 from flexarm_env.tasks import CONTROL_RATE
 from flexarm_env.trials.rollout import Agent
 from flexarm_env.trials.sets import FIRST_SEED
@@ -27,6 +28,8 @@ Floats = NDArray[np.float64]
 NEAR = 1.0
 #: Time that is predicted, and time between the readings that predict [s].
 AHEAD, APART = 0.05, 0.02
+#: What a run holds.
+RECORDED = {"recipe", "curve", "returns", "errors"}
 COLOURS = {"added": "#12395b", "alone": "#2e7d4f", "bare": "#b3541e"}
 
 
@@ -94,7 +97,9 @@ def runs_of(folder: Path) -> dict[str, list[dict[str, Any]]]:
     """Read the stored runs of each recipe, by its name."""
     found: dict[str, list[dict[str, Any]]] = {}
     for path in sorted(folder.glob("*-*.json")):
-        run = json.loads(path.read_text(encoding="utf-8"))
+        run = read_json(path, "delete it, and it is made anew")
+        if not run.keys() >= RECORDED:
+            raise InputError(f"{path}: is no run of a recipe; move it out of {folder}")
         found.setdefault(run["recipe"], []).append(run)
     return found
 

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from joblib import Parallel, delayed
 
 from agents.compare import find_policies
 from agents.evaluate import RATE, evaluate_controller
@@ -23,8 +22,10 @@ from agents.train import FOLDER as WEIGHTS
 from flexarm_env import Arm, InputError
 from flexarm_env.controllers import CONTROLLERS
 from flexarm_env.errors import did_you_mean
+from flexarm_env.identify.workers import Workers
 from flexarm_env.tasks import TASKS
 from flexarm_env.terminal.outputs import make_folder
+from flexarm_env.terminal.program import Program
 from flexarm_env.trials.measures import MEASURES, measure
 from flexarm_env.trials.rollout import roll_out
 from flexarm_env.trials.score import cost, worst_tenth
@@ -88,9 +89,7 @@ def evaluate(
 ) -> dict[str, dict[str, Values]]:
     """Evaluate agents on every set: each measure (runs, arms), by set and agent."""
     work = [(arms, name) for arms in ROBUSTNESS for name in agents]
-    running = Parallel(n_jobs=jobs, return_as="generator")(
-        delayed(evaluate_any)(agents[name], arms, arm, count, first_seed) for arms, name in work
-    )
+    running = Workers(jobs).spread([(evaluate_any, (agents[name], arms, arm, count, first_seed)) for arms, name in work])
     found: dict[str, dict[str, Values]] = {arms: {} for arms in ROBUSTNESS}
     for done, ((arms, name), values) in enumerate(zip(work, running, strict=True)):
         found[arms][name] = values
@@ -135,7 +134,8 @@ def first_seed_of(asked: argparse.Namespace) -> int:
     return DEVELOPMENT_SEED if asked.development else FIRST_SEED
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+@Program()
+def main(arguments: Sequence[str]) -> int:
     """Compare, write JSON and Markdown, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.robustness", description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help="controllers and stored policies; all by default")
@@ -147,15 +147,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--save", type=Path, default=FOLDER, help="folder of the results; results/robustness by default")
     asked = parser.parse_args(arguments)
     began = time.perf_counter()
-    try:
-        if asked.count < 1 or asked.jobs < 1:
-            raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
-        make_folder(asked.save, "robustness.json", "robustness.md")
-        agents = chosen(asked.names, asked.policies)
-        values = evaluate(agents, asked.arm, asked.count, first_seed_of(asked), asked.jobs)
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
+    if asked.count < 1 or asked.jobs < 1:
+        raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
+    make_folder(asked.save, "robustness.json", "robustness.md")
+    agents = chosen(asked.names, asked.policies)
+    values = evaluate(agents, asked.arm, asked.count, first_seed_of(asked), asked.jobs)
     result = result_of(asked, agents, values, time.perf_counter() - began)
     place = write_results(asked.save, "robustness", result, report_of(result))
     print(f"{place}: {len(agents)} controllers and policies, {result['seconds']} s")

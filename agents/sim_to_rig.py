@@ -30,9 +30,10 @@ from agents.rig_controllers import NOMINAL, RETUNED, controllers_of, retune, tun
 from agents.rig_report import report_of, verdict_of
 from agents.train import place_of
 from flexarm_env import Arm, InputError, Recording, __version__, diagnose
-from flexarm_env.files import write_whole
+from flexarm_env.files import read_json, write_whole
 from flexarm_env.tasks import TASKS
 from flexarm_env.terminal.outputs import make_folder
+from flexarm_env.terminal.program import Program
 from flexarm_env.terminal.provenance import commit
 from flexarm_env.trials.measures import MEASURES, measure
 from flexarm_env.trials.sets import FIRST_SEED
@@ -121,7 +122,8 @@ def evaluate(folder: Path, case: str, count: int, say: Callable[[str], None]) ->
     return found
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+@Program(stopped="stopped; the same command goes on")
+def main(arguments: Sequence[str]) -> int:
     """Evaluate the stored policies, after making missing ones with --make, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.sim_to_rig", description=__doc__.partition("\n")[0])
     parser.add_argument("--make", action="store_true", help="first diagnose and train what is not there; stopped, it goes on")
@@ -134,27 +136,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
     def say(text: str) -> None:
         print(f"\r{time.perf_counter() - began:4.0f} s  {text:<70}", end="", file=sys.stderr, flush=True)
 
-    try:
-        if asked.count < 1 or asked.jobs < 1:
-            raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
-        make_folder(asked.save, "sim_to_rig.json", "sim_to_rig.md")
-        if asked.make:
-            make(asked.save, asked.jobs, say)
-        there = [case for case in CASES if all(policies_of(asked.save, kind, case) for kind in PLANS)]
-        if not there:
-            raise InputError(f"no policies in {asked.save}; add --make to diagnose and train")
-        values = {case: evaluate(asked.save, case, asked.count, say) for case in there}
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        print("\nstopped; the same command goes on", file=sys.stderr)
-        return 130
+    if asked.count < 1 or asked.jobs < 1:
+        raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
+    make_folder(asked.save, "sim_to_rig.json", "sim_to_rig.md")
+    if asked.make:
+        make(asked.save, asked.jobs, say)
+    there = [case for case in CASES if all(policies_of(asked.save, kind, case) for kind in PLANS)]
+    if not there:
+        raise InputError(f"no policies in {asked.save}; add --make to diagnose and train")
+    values = {case: evaluate(asked.save, case, asked.count, say) for case in there}
     result = {
         **origin_of(f"python -m agents.sim_to_rig --count {asked.count}", FIRST_SEED),
         "episodes": asked.count,
         "seconds": round(time.perf_counter() - began, 1),
-        "diagnoses": {case: json.loads((asked.save / "arms" / f"{case}.json").read_text("utf-8")) for case in there},
+        "diagnoses": {case: read_json(asked.save / "arms" / f"{case}.json", "delete it, and add --make") for case in there},
         "not_made": [case for case in CASES if case not in there],
         "cases": {case: verdict_of(found) for case, found in values.items()},
     }

@@ -11,6 +11,7 @@ from agents.learning.options import Plan
 from agents.learning.plan_file import option_table, read_plan
 from flexarm_env.errors import InputError
 from flexarm_env.terminal.outputs import make_folder
+from flexarm_env.terminal.program import Program
 
 FOLDER = Path(__file__).resolve().parent.parent / "results" / "policies" / "weights"
 
@@ -20,7 +21,8 @@ def place_of(folder: Path, config: Path, seed: int) -> Path:
     return folder / f"{config.stem}-{seed}.safetensors"
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+@Program(stopped="stopped; the same command goes on from at most ten seconds before")
+def main(arguments: Sequence[str]) -> int:
     """Train the missing policies, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.train", description=__doc__)
     parser.add_argument("configs", nargs="*", type=Path, metavar="CONFIG", help="TOML files, such as configs/agents/*.toml")
@@ -32,22 +34,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if asked.options:
         print(option_table(), end="")
         return 0
-    try:
-        plans = [(config, read_plan(config)) for config in asked.configs]
-        if not plans:
-            raise InputError("no configuration; name one such as configs/agents/ppo_slew.toml, or use --options")
-        if asked.seeds and min(asked.seeds) < 0:
-            raise InputError(f"--seeds {min(asked.seeds)}; give whole numbers from 0 up")
-        make_folder(asked.save)
-        for config, plan in plans:
-            for seed in asked.seeds or range(plan.seeds):
-                one_run(config, plan, seed, asked.save, asked.tensorboard)
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        print("\nstopped; the same command goes on from at most ten seconds before", file=sys.stderr)
-        return 130
+    plans = [(config, read_plan(config)) for config in asked.configs]
+    if not plans:
+        raise InputError("no configuration; name one such as configs/agents/ppo_slew.toml, or use --options")
+    if asked.seeds and min(asked.seeds) < 0:
+        raise InputError(f"--seeds {min(asked.seeds)}; give whole numbers from 0 up")
+    make_folder(asked.save)
+    for config, plan in plans:
+        for seed in asked.seeds or range(plan.seeds):
+            one_run(config, plan, seed, asked.save, asked.tensorboard)
     return 0
 
 

@@ -14,8 +14,8 @@ from pathlib import Path
 from agents.learning.options import Plan
 from agents.learning.plan_file import read_plan, read_table
 from flexarm_env import Arm
-from flexarm_env.errors import InputError
 from flexarm_env.terminal.outputs import make_folder
+from flexarm_env.terminal.program import Program
 from flexarm_env.tuning.judge import cells_of, score
 from flexarm_env.tuning.search import Budget, tune
 from flexarm_env.tuning.spaces import SPACES, Range, nested, space_of
@@ -77,7 +77,8 @@ def said(name: str, budget: Budget) -> Callable[[int, float], None]:
     return report
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+@Program(stopped="stopped; with --journal, the same command goes on")
+def main(arguments: Sequence[str]) -> int:
     """Search for the options of each subject, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.tune", description=__doc__.partition("\n")[0])
     parser.add_argument("subjects", nargs="+", metavar="NAME|CONFIG", help=f"of {', '.join(SPACES)}; or a policy's TOML file")
@@ -89,20 +90,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--actions", type=int, default=4_000_000, help="in a trial of a policy; 4 million by default")
     parser.add_argument("--save", type=Path, default=FOLDER, help="folder of the tuned laws; configs/controllers by default")
     asked = parser.parse_args(arguments)
-    try:
-        budget = Budget(asked.trials, asked.arms, asked.seed)
-        for subject in asked.subjects:
-            if not subject.endswith(".toml"):
-                space_of(subject)
-                make_folder(asked.save, place_of(subject))
-        for subject in asked.subjects:
-            one_search(subject, asked, budget)
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        print("\nstopped; with --journal, the same command goes on", file=sys.stderr)
-        return 130
+    budget = Budget(asked.trials, asked.arms, asked.seed)
+    for subject in asked.subjects:
+        if not subject.endswith(".toml"):
+            space_of(subject)
+            make_folder(asked.save, place_of(subject))
+    for subject in asked.subjects:
+        one_search(subject, asked, budget)
     return 0
 
 

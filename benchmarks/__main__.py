@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-# The matrices are small: threads inside BLAS cost more than they save, for the peers as well.
-for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
-    os.environ.setdefault(variable, "1")
-
-from benchmarks import environments, faults, jacobian, plant, report, start  # noqa: E402
-from benchmarks.diagnosis import measure as diagnosis  # noqa: E402
-from benchmarks.diagnosis.cases import CASES  # noqa: E402
+from benchmarks import environments, faults, jacobian, plant, report, start
+from benchmarks.diagnosis import measure as diagnosis
+from benchmarks.diagnosis.cases import CASES
+from flexarm_env.terminal.outputs import make_folder
+from flexarm_env.terminal.program import Program
 
 PARTS = {"plant": plant, "jacobian": jacobian, "start": start, "diagnosis": diagnosis, "environments": environments}
 #: Left out of a whole run, and with options of its own.
@@ -23,7 +21,8 @@ ON_REQUEST = {"faults": faults}
 OUTPUT = Path(__file__).resolve().parent.parent / "results" / "bench" / "bench.json"
 
 
-def main() -> None:
+@Program()
+def main(arguments: Sequence[str]) -> None:
     """Run the requested parts, all by default."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     for name, part in (PARTS | ON_REQUEST).items():
@@ -32,10 +31,13 @@ def main() -> None:
     parser.add_argument("--cases", nargs="+", choices=list(CASES), help="with --diagnosis: only these")
     parser.add_argument("--seed", type=int, default=faults.SEED, help="with --faults: of the cases; 1 has been looked at")
     parser.add_argument("--count", type=int, default=faults.COUNT, help="with --faults: cases")
-    asked = parser.parse_args()
+    asked = parser.parse_args(arguments)
     if asked.cases and not asked.diagnosis:
         parser.error("--cases needs --diagnosis")
     names = [name for name in PARTS if getattr(asked, name)] or ([] if asked.faults else list(PARTS))
+    output = asked.output or (OUTPUT if len(names) == len(PARTS) else None)
+    if output is not None:
+        make_folder(output.parent, output.name)
     began = time.perf_counter()
 
     def say(text: str) -> None:
@@ -47,11 +49,10 @@ def main() -> None:
     if asked.faults:
         found |= faults.measure(say, asked.seed, asked.count)
     report.show(found)
-    output = asked.output or (OUTPUT if len(names) == len(PARTS) else None)
     if output is not None:
         report.write(output, found, time.perf_counter() - began)
         say(f"figures are in {output}")
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -14,7 +14,7 @@ from flexarm_env.control.law import ControlLaw
 from flexarm_env.display import Shown
 from flexarm_env.effects import Catalogue, Effect, catalogue
 from flexarm_env.errors import InputError, did_you_mean
-from flexarm_env.parameters import INPUTS, NEEDS, SECTIONS, Parameter, check_bounds, reading_noise
+from flexarm_env.parameters import INPUTS, NEEDS, SECTIONS, Parameter, read_value, reading_noise
 from flexarm_env.sensors import Sensor, known_sensors
 
 if TYPE_CHECKING:
@@ -127,12 +127,12 @@ class Arm(Shown):
         """
         write_arm(self, Path(path))
 
-    def with_effect(self, name: str, **parameters: float) -> Arm:
+    def with_effect(self, name: str, **parameters: float | str) -> Arm:
         """Add an effect, or change its parameters.
 
         Args:
             name: of the effect, as `flexarm effects` lists it.
-            **parameters: values in SI units. Others keep their value in the arm, or take their typical one.
+            **parameters: values in SI units, or texts with a unit. Others keep their value in the arm, or take their typical one.
 
         Returns:
             Another arm; this one is unchanged.
@@ -149,7 +149,7 @@ class Arm(Shown):
         for key, value in parameters.items():
             if key not in effect.parameters:
                 raise InputError(f"effect '{name}' has no parameter '{key}'{did_you_mean(key, effect.parameters)}")
-            values[key] = check_bounds(f"effects.{name}.{key}", float(value), effect.parameters[key])
+            values[key] = read_value(f"effects.{name}.{key}", value, effect.parameters[key], self.input)
         self._check_needs(effect)
         return replace(self, effects={**self.effects, name: values})
 
@@ -252,12 +252,24 @@ class Arm(Shown):
         Example:
             >>> Arm.load("thesis").value("effects.coulomb.torque")
             0.282
+
+        Raises:
+            InputError: for a path of no value of this arm.
         """
         section, *rest = path.split(".")
-        if section in ("effects", "sensors"):
-            table = self.effects if section == "effects" else self.sensors
-            return table[rest[0]][rest[1]]
-        return self.constants[section][rest[0]]
+        try:
+            if section in ("effects", "sensors"):
+                name, key = rest
+                return (self.effects if section == "effects" else self.sensors)[name][key]
+            (key,) = rest
+            return self.constants[section][key]
+        except (KeyError, ValueError):
+            raise self._no_value(path) from None
+
+    def _no_value(self, path: str) -> InputError:
+        tables = _by_path(self.constants, self.sensors, self.effects)
+        paths = [f"{table}.{key}" for table, values in tables.items() for key in values]
+        return InputError(f"arm '{self.name}' has no value '{path}'{did_you_mean(path, paths)}")
 
     def with_values(self, values: Values) -> Arm:
         """Replace values, which are not checked against their bounds.
@@ -268,6 +280,9 @@ class Arm(Shown):
         Returns:
             Another arm; this one is unchanged.
 
+        Raises:
+            InputError: for a path of no value of this arm.
+
         Example:
             >>> Arm.load("thesis").with_values({"beam.length": 0.8, "effects.coulomb.torque": 0.3}).value("beam.length")
             0.8
@@ -275,14 +290,12 @@ class Arm(Shown):
         constants = {key: dict(table) for key, table in self.constants.items()}
         sensors = {key: dict(table) for key, table in self.sensors.items()}
         effects = {key: dict(table) for key, table in self.effects.items()}
+        tables = _by_path(constants, sensors, effects)
         for path, value in values.items():
-            section, *rest = path.split(".")
-            if section == "effects":
-                effects[rest[0]][rest[1]] = value
-            elif section == "sensors":
-                sensors[rest[0]][rest[1]] = value
-            else:
-                constants[section][rest[0]] = value
+            table, _, key = path.rpartition(".")
+            if key not in tables.get(table, {}):
+                raise self._no_value(path)
+            tables[table][key] = value
         return replace(self, constants=constants, sensors=sensors, effects=effects)
 
     @property
@@ -383,3 +396,10 @@ def short_name(path: str) -> str:
     """Shorten a path for tables: "beam.length" to length, "hub.inertia" to hub_inertia, "effects.x.y" to x_y."""
     section, *rest = path.split(".")
     return f"hub_{rest[0]}" if section == "hub" else "_".join(rest)
+
+
+def _by_path(*parts: Mapping[str, Any]) -> dict[str, Any]:
+    """List the tables of constants, sensors and effects by the path that is before a key."""
+    constants, sensors, effects = parts
+    found = {**constants, **{f"sensors.{name}": table for name, table in sensors.items()}}
+    return found | {f"effects.{name}": table for name, table in effects.items()}

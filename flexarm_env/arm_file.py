@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,12 +11,11 @@ from flexarm_env.control.table import law_from_table
 from flexarm_env.effects import Catalogue
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import read_toml
-from flexarm_env.parameters import INPUTS, LEVEL, SECTIONS, Parameter, check_bounds, defaults_of
+from flexarm_env.parameters import INPUTS, LEVEL, SECTIONS, defaults_of, read_value
 from flexarm_env.recordings.checks import check_conditions
 from flexarm_env.recordings.conditions import CONDITIONS
 from flexarm_env.recordings.messages import file_error
 from flexarm_env.sensors import known_sensors
-from flexarm_env.units import quantity
 
 if TYPE_CHECKING:
     from flexarm_env.arm import Arm
@@ -82,7 +80,7 @@ def arm_from_table(kind: type[Arm], table: Mapping[str, Any], name: str, known: 
     """
     _refuse_unknown("", table, TOP)
     command, constants = _constants(table)
-    sensors, auto_noise = _sensors(_table(table, "sensors"))
+    sensors, auto_noise = _sensors(_table(table, "sensors"), command)
     arm = kind(
         name=_text(table, "name", name),
         input=command,
@@ -109,7 +107,7 @@ def arm_from_table(kind: type[Arm], table: Mapping[str, Any], name: str, known: 
         if missing:
             raise InputError(f"effects.{effect}.{missing[0]} is missing")
         absent = {key: p.null for key, p in parameters.items() if key not in given and p.null is not None}
-        read = {key: _number(f"effects.{effect}.{key}", value, parameters[key]) for key, value in given.items()}
+        read = {key: read_value(f"effects.{effect}.{key}", value, parameters[key], command) for key, value in given.items()}
         arm = arm.with_effect(effect, **absent, **read)
     return arm
 
@@ -127,10 +125,12 @@ def _constants(table: Mapping[str, Any]) -> tuple[str, dict[str, dict[str, float
     command = drive.pop("input", "current")
     if not isinstance(command, str) or command not in INPUTS:
         raise InputError(f"drive.input = {command!r}{did_you_mean(str(command), INPUTS)}")
-    constants = {"drive": _section("drive", drive, defaults_of("drive", command, table))}
+    constants = {"drive": _section("drive", drive, defaults_of("drive", command, table), command)}
     given = {"hub": _table(table, "hub", {} if "link" in table else None)}
     given |= {section: _table(table, section) for section in ("beam", "link", "joint") if section in table}
-    constants |= {section: _section(section, values, defaults_of(section, command, table)) for section, values in given.items()}
+    constants |= {
+        section: _section(section, values, defaults_of(section, command, table), command) for section, values in given.items()
+    }
     if command == "torque" and "torque_constant" in drive:
         raise InputError('drive.torque_constant: a torque drive has none; take it out, or write input = "current"')
     check_constants(command, constants)
@@ -183,26 +183,13 @@ def _refuse_unknown(prefix: str, table: Mapping[str, Any], allowed: Any) -> None
             raise InputError(f"unknown key '{prefix}{key}'{did_you_mean(key, allowed)}")
 
 
-def _number(path: str, value: Any, parameter: Parameter) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        written = f' or "{parameter.typical:g} {parameter.unit}"' if parameter.unit else ""
-        raise InputError(f"{path} = {value!r} is no number; write for example {parameter.typical:g}{written}")
-    try:
-        number = quantity(value, parameter.unit)
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from None
-    if math.isnan(number):
-        raise InputError(f"{path} is not a number")
-    return check_bounds(path, number, parameter)
-
-
-def _section(section: str, given: dict[str, Any], defaults: Mapping[str, float]) -> dict[str, float]:
+def _section(section: str, given: dict[str, Any], defaults: Mapping[str, float], command: str) -> dict[str, float]:
     parameters = SECTIONS[section]
     if "tilt" in parameters:
         given = _with_tilt(section, given)
     _refuse_unknown(f"{section}.", given, parameters)
     values = dict(defaults)
-    values |= {key: _number(f"{section}.{key}", value, parameters[key]) for key, value in given.items()}
+    values |= {key: read_value(f"{section}.{key}", value, parameters[key], command) for key, value in given.items()}
     for key, parameter in parameters.items():
         if key not in values:
             raise InputError(f"{section}.{key} is missing; it is a number{' in ' if parameter.unit else ''}{parameter.unit}")
@@ -220,7 +207,7 @@ def _with_tilt(section: str, given: dict[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in given.items() if key != "vertical"} | {"tilt": LEVEL if given["vertical"] else 0.0}
 
 
-def _sensors(given: Mapping[str, Any]) -> tuple[dict[str, dict[str, float]], list[str]]:
+def _sensors(given: Mapping[str, Any], command: str) -> tuple[dict[str, dict[str, float]], list[str]]:
     """Read the settings of each sensor, and list those whose noise is estimated from recordings."""
     _refuse_unknown("sensors.", given, known_sensors())
     if not given:
@@ -233,6 +220,6 @@ def _sensors(given: Mapping[str, Any]) -> tuple[dict[str, dict[str, float]], lis
             auto_noise.append(signal)
             table = table | {"noise": 0.0}
         values = {key: p.typical for key, p in settings.items()}
-        values |= {key: _number(f"sensors.{signal}.{key}", value, settings[key]) for key, value in table.items()}
+        values |= {key: read_value(f"sensors.{signal}.{key}", value, settings[key], command) for key, value in table.items()}
         sensors[signal] = values
     return sensors, auto_noise

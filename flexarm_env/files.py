@@ -1,7 +1,8 @@
-"""Atomic writing of files, and bounded reading of TOML files."""
+"""Atomic writing of files, and bounded reading of regular ones."""
 
 from __future__ import annotations
 
+import json
 import os
 import stat
 import tomllib
@@ -12,6 +13,7 @@ from typing import Any
 from flexarm_env.errors import InputError
 
 LARGEST_TOML = 1_000_000
+LARGEST_JSON = 100_000_000
 
 
 def write_whole(path: Path, content: str | bytes) -> None:
@@ -37,25 +39,74 @@ def write_whole(path: Path, content: str | bytes) -> None:
         raise InputError(f"cannot write {path}: {error.strerror}; name a folder that exists and can be written") from None
 
 
-def read_toml(path: Path) -> dict[str, Any]:
+def check_file(path: Path, largest: int, remedy: str) -> None:
+    """Refuse to open what is no regular file, where a pipe would wait for ever, or is too large.
+
+    Args:
+        path: of the file.
+        largest: size [bytes].
+        remedy: end of a message, such as "name a TOML file".
+
+    Raises:
+        InputError: for such a file, or one that is not there.
+    """
+    try:
+        status = path.stat()
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}; {remedy}") from None
+    if not stat.S_ISREG(status.st_mode):
+        raise InputError(f"{path}: is no regular file; {remedy}")
+    if status.st_size > largest:
+        raise InputError(f"{path}: is larger than {largest} bytes; {remedy}")
+
+
+def read_whole(path: Path, largest: int, remedy: str) -> bytes:
+    """Read a file. Arguments as `check_file`.
+
+    Raises:
+        InputError: if it is no regular file, too large, or cannot be read.
+    """
+    check_file(path, largest, remedy)
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}; {remedy}") from None
+
+
+def read_toml(path: Path, remedy: str = "name a TOML file") -> dict[str, Any]:
     """Read the tables of a TOML file in UTF-8, with or without a byte order mark.
+
+    Args:
+        path: of the file.
+        remedy: end of a message.
 
     Raises:
         InputError: if it is no regular file, too large, or not TOML.
     """
-    try:
-        status = path.stat()
-        regular = stat.S_ISREG(status.st_mode)  # a pipe is not opened: it would wait for ever
-        content = path.read_bytes() if regular and status.st_size <= LARGEST_TOML else b""
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror}; name a TOML file that can be read") from None
-    if not regular:
-        raise InputError(f"{path}: is no regular file; name a TOML file")
-    if status.st_size > LARGEST_TOML:
-        raise InputError(f"{path}: is larger than {LARGEST_TOML} bytes; name a TOML file")
+    content = read_whole(path, LARGEST_TOML, remedy)
     try:
         return tomllib.loads(content.decode("utf-8-sig"))
     except RecursionError:
         raise InputError(f"{path}: is not TOML that can be read: its values are nested too deeply") from None
     except ValueError as error:
         raise InputError(f"{path}: is not TOML: {' '.join(str(error).split())}") from None
+
+
+def read_json(path: Path, remedy: str) -> dict[str, Any]:
+    """Read a table of JSON that a program has written before.
+
+    Args:
+        path: of the file.
+        remedy: end of a message, such as "delete it to make it anew".
+
+    Raises:
+        InputError: if it is no regular file, too large, or no table of JSON.
+    """
+    content = read_whole(path, LARGEST_JSON, remedy)
+    try:
+        found = json.loads(content)
+    except (ValueError, RecursionError):
+        found = None
+    if not isinstance(found, dict):
+        raise InputError(f"{path}: is damaged, or no table of JSON; {remedy}")
+    return found

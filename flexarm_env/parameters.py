@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from flexarm_env.errors import InputError
+from flexarm_env.units import as_float, quantity
 
 #: SI unit of each kind of command.
 INPUTS: dict[str, str] = {"current": "A", "voltage": "V", "torque": "N*m", "position": "rad"}
@@ -68,6 +70,22 @@ class Parameter:
         """
         return scales.get("command" if self.of_command else self.unit, 1.0)
 
+    def under(self, command: str) -> Parameter:
+        """Fill in the unit of a command, which the catalogue leaves open.
+
+        Args:
+            command: kind of the drive's command.
+
+        Example:
+            >>> [Parameter(unit, 0.0, 1.0, 0.1, of_command=True).under("current").unit for unit in ("", "1/s")]
+            ['A', 'A/s']
+        """
+        if not self.of_command:
+            return self
+        unit = INPUTS[command]
+        filled = unit + self.unit.removeprefix("1") if self.unit.startswith("1/") else self.unit or unit
+        return replace(self, unit=filled)
+
 
 TABLE = "thesis Table A.1"
 #: Tilt of an axis that is level, about which gravity acts in full.
@@ -115,7 +133,16 @@ DRIVE = {
     "largest_duty": Parameter("", 1e-3, 1.0, 1.0, spread=0.0, meaning="share of the supply that the servo gives out at most"),
     "current_limit": Parameter("A", 0.0, 1e6, 0.0, spread=0.0, meaning="of the servo's firmware; 0: none"),
     "enabled": Parameter("", 0.0, 1.0, 1.0, spread=0.0, meaning="1: the drive is on; 0: the motor's circuit is open"),
-    "limit": Parameter("", 0.0, 1e6, 5.0, spread=0.0, meaning="largest command, in A, V, Nm or rad", source="thesis section 4.2"),
+    "limit": Parameter(
+        "",
+        0.0,
+        1e6,
+        5.0,
+        spread=0.0,
+        meaning="largest command, in A, V, Nm or rad",
+        source="thesis section 4.2",
+        of_command=True,
+    ),
     "torque_noise": Parameter(
         "N*m", 0.0, 1e4, 0.0, spread=0.0, meaning="unmodelled disturbance torque at the hub, standard deviation per sample"
     ),
@@ -243,6 +270,38 @@ SENSOR = {
 def reading_noise(sensor: Mapping[str, float]) -> float:
     """Compute the standard deviation of a sensor's reading in its own unit: its noise, and the rounding to its steps."""
     return float(np.hypot(sensor["noise"], sensor["resolution"] / 12**0.5))
+
+
+def read_value(path: str, value: Any, parameter: Parameter, command: str) -> float:
+    """Read a value that a person gives: a number in SI, or a text with a unit.
+
+    Args:
+        path: of the value, for messages.
+        value: as given.
+        parameter: with unit and bounds.
+        command: kind of the drive's command, the unit of which its quantities have, or the one that the catalogue leaves open.
+
+    Raises:
+        InputError: for what is no number, a unit that does not convert, and a value out of bounds.
+
+    Example:
+        >>> read_value("effects.backlash.gap", "60 mrad", Parameter("rad", 0.0, 1.0, 0.06), "current")
+        0.06
+    """
+    if not isinstance(value, str) or not parameter.unit or not value.endswith(f" {parameter.unit}"):
+        parameter = parameter.under(command)
+    try:
+        if isinstance(value, bool):
+            raise TypeError
+        number = quantity(value, parameter.unit) if isinstance(value, str) else as_float(value)
+    except (TypeError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise InputError(f"{path}: {error}") from None
+        written = f' or "{parameter.typical:g} {parameter.unit}"' if parameter.unit else ""
+        raise InputError(f"{path} = {value!r} is no number; write for example {parameter.typical:g}{written}") from None
+    if math.isnan(number):
+        raise InputError(f"{path} is not a number")
+    return check_bounds(path, number, parameter)
 
 
 def check_bounds(path: str, value: float, parameter: Parameter) -> float:

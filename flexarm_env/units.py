@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import re
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from flexarm_env.errors import InputError, did_you_mean
@@ -187,8 +188,8 @@ def is_quantity(text: str) -> bool:
     return bool(match and (not match[2] or (len(match[2]) <= _LONGEST and _UNIT.fullmatch(match[2]))))
 
 
-def split(text: str) -> tuple[float, str]:
-    """Split a quantity into number and unit, "" for none.
+def split(text: str, target: str = "kg") -> tuple[float, str]:
+    """Split a quantity into number and unit, "" for none; the target serves the message alone.
 
     Raises:
         InputError: for a text of another form, or a number that is not finite.
@@ -199,7 +200,7 @@ def split(text: str) -> tuple[float, str]:
     """
     match = _QUANTITY.fullmatch(text.strip())
     if match is None or not math.isfinite(float(match[1])):
-        raise InputError(f"{text[:_LONGEST]!r} is not a number with a unit; write for example '0.3 kg'")
+        raise InputError(f"{text[:_LONGEST]!r} is not a number with a unit; write for example '{f'0.3 {target}'.rstrip()}'")
     return float(match[1]), match[2] or ""
 
 
@@ -219,7 +220,7 @@ def quantity(value: str | float, target: str) -> float:
     """
     if not isinstance(value, str):
         return as_float(value)
-    number, unit = split(value)
+    number, unit = split(value, target)
     if unit and not target:
         bare = number / 100.0 if unit in _PERCENT else number
         raise InputError(f"unit '{unit}' on a bare number; write {bare:g}")
@@ -230,7 +231,7 @@ class BaseValue(float):
     """A number in SI base units, with these beside it.
 
     Attributes:
-        unit: such as "kg"; "" where none was stated.
+        unit: such as "kg" or "V/rad"; "" where none was stated.
 
     Example:
         >>> BaseValue(0.3, "kg").unit, BaseValue(0.3, "kg") + 1.0
@@ -240,7 +241,7 @@ class BaseValue(float):
     unit: str
 
     def __new__(cls, number: float, unit: str = "") -> BaseValue:
-        """Make a number of a unit, which is one of SI's base units or a product of them."""
+        """Make a number of a unit, whose own factor to SI's base units is 1."""
         made = super().__new__(cls, number)
         made.unit = unit
         return made
@@ -253,8 +254,8 @@ def base_value(text: str) -> BaseValue:
         InputError: for a text that is not a number with a unit, or an unknown unit.
 
     Example:
-        >>> base_value("20 degC"), base_value("300 g").unit
-        (293.15, 'kg')
+        >>> base_value("20 degC"), base_value("300 g").unit, base_value("6 mV/deg").unit
+        (293.15, 'kg', 'V/rad')
     """
     number, unit = split(text)
     return in_base(number, unit)
@@ -276,7 +277,41 @@ def in_base(number: float, *stated: str) -> BaseValue:
     if not parsed:
         return BaseValue(number)
     try:
-        found = _registry().Quantity(number, math.prod(parsed[1:], start=parsed[0])).to_base_units()
+        product = _registry().Unit(math.prod(parsed[1:], start=parsed[0]))
+        found = _registry().Quantity(number, product).to_base_units()
     except pint.PintError:
         raise InputError(f"{' × '.join(stated)} is no unit; {_allowed('SI')}") from None
-    return BaseValue(float(found.magnitude), f"{found.units:~}")
+    coherent = _coherent(product)
+    written = [unit for unit in stated if unit]
+    text = written[0] if len(written) == 1 and coherent == product else f"{coherent:~C}".replace("Ω", "ohm")
+    return BaseValue(float(found.magnitude), text)
+
+
+def _coherent(unit: pint.Unit) -> pint.Unit:
+    """Take off prefixes, and replace units of other systems, so that a number is that in base units: V/rad for mV/deg."""
+    registry = _registry()
+
+    def is_coherent(name: str) -> bool:
+        return all(registry.Quantity(number, name).to_base_units().magnitude == number for number in (0.0, 1.0))
+
+    found = registry.Unit("")
+    for name, power in registry.Quantity(1.0, unit).unit_items():
+        names = (name, registry.parse_unit_name(name)[0][1])
+        own = next(filter(is_coherent, names), None)
+        base = registry.Unit(own) if own else registry.Quantity(1.0, name).to_base_units().units
+        found = registry.Unit(found * base**power)
+    return found
+
+
+def product_converts(units: Sequence[str], target: str) -> bool:
+    """Whether a product of units converts to another unit.
+
+    Raises:
+        InputError: for an unknown unit.
+
+    Example:
+        >>> product_converts(["1/s", "V*s/rad"], "V/rad"), product_converts(["A/rad"], "V/rad")
+        (True, False)
+    """
+    product = math.prod((_parse(unit, target) for unit in units), start=_registry().Unit(""))
+    return _same_kind(_registry().Unit(product), _parse(target, target))

@@ -99,3 +99,50 @@ def test_another_kind_of_value_is_refused(tmp_path, line, instead, words):
 def test_an_effect_s_count_is_a_whole_number():
     with pytest.raises(InputError, match=re.escape("effects.higher_modes.elements = 2.5; write a whole number")):
         Arm.load("thesis").with_effect("higher_modes", elements=2.5)
+
+
+VOLTAGE = """
+[drive]
+input = "voltage"
+resistance = "4.2 ohm"
+torque_constant = 0.00768
+gear_ratio = 70
+motor_inertia = 0
+limit = {limit}
+[hub]
+inertia = 0.002
+[sensors.arm_angle]
+[effects.dead_zone]
+width = {width}
+[effects.rate_limit]
+rate = {rate}
+"""
+WRITTEN = {"limit": 10.0, "width": 0.1, "rate": 30.0}
+
+
+def voltage_arm(folder: Path, **values: str) -> Arm:
+    (folder / "arm.toml").write_text(VOLTAGE.format(**(WRITTEN | values)))
+    return Arm.load(folder / "arm.toml")
+
+
+@pytest.mark.parametrize(
+    "values", [{"limit": '"10 V"'}, {"width": '"100 mV"'}, {"rate": '"30 V/s"'}, {"rate": '"0.03 V/ms"'}, {"rate": '"30.0 1/s"'}]
+)
+def test_a_quantity_of_the_command_may_have_its_unit(tmp_path, values):
+    assert bits(voltage_arm(tmp_path, **values).effects) == bits(voltage_arm(tmp_path).effects)
+    assert voltage_arm(tmp_path, **values).value("drive.limit") == 10.0
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"limit": '"10 A"'}, "drive.limit: unit 'A' does not convert to V"),
+        ({"width": '"0.1 A"'}, "effects.dead_zone.width: unit 'A' does not convert to V"),
+        ({"rate": '"30 A/s"'}, "effects.rate_limit.rate: unit 'A/s' does not convert to V/s"),
+        ({"width": "-1"}, "effects.dead_zone.width = -1 V is out of bounds: allowed are 0 to 10000 V"),
+        ({"limit": '"-3 V"'}, "drive.limit = -3 V is out of bounds"),
+    ],
+)
+def test_a_quantity_of_another_command_is_refused(tmp_path, values, words):
+    with pytest.raises(InputError, match=re.escape(words)):
+        voltage_arm(tmp_path, **values)

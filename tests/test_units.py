@@ -34,6 +34,28 @@ def test_quantities(value: str | float, target: str, expected: float) -> None:
     assert units.quantity(value, target) == pytest.approx(expected, rel=1e-15)
 
 
+@pytest.mark.parametrize(
+    ("text", "number", "unit"),
+    [
+        ("12 V", 12.0, "V"),
+        ("4200 mohm", 4.2, "ohm"),
+        ("9 mV/mrad", 9.0, "V/rad"),
+        ("0.1 V*s/rad", 0.1, "V*s/rad"),
+        ("300 g", 0.3, "kg"),
+        ("30 g cm^2", 3e-6, "kg*m**2"),
+        ("3 1/ms", 3000.0, "1/s"),
+        ("2 min", 120.0, "s"),
+        ("3 turn", 6.0 * np.pi, "rad"),
+        ("20 degC", 293.15, "K"),
+    ],
+)
+def test_a_base_value_keeps_a_unit_that_a_person_writes(text: str, number: float, unit: str) -> None:
+    found = units.base_value(text)
+    assert (found, found.unit) == (pytest.approx(number, rel=1e-12), unit)
+    again = units.base_value(f"{float(found)!r} {found.unit}")
+    assert (again, again.unit) == (found, found.unit)
+
+
 def test_making_the_registry_warns_of_nothing(caplog):
     with caplog.at_level(logging.DEBUG):
         registry = units._registry.__wrapped__()

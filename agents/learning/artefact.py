@@ -23,7 +23,7 @@ from agents.learning.plan_file import read_table
 from flexarm_env.arm import Arm
 from flexarm_env.arm_text import arm_text
 from flexarm_env.errors import InputError
-from flexarm_env.files import write_whole
+from flexarm_env.files import check_file, write_whole
 from flexarm_env.wrappers import PolicyInterface
 
 FORMAT = "flexarm-policy-1"
@@ -60,9 +60,8 @@ class Artefact:
         Raises:
             InputError: for a file that is not there, or is no such artefact, in one line.
         """
+        check_file(path, LARGEST_FILE, "name a policy that python -m agents.train wrote")
         try:
-            if path.stat().st_size > LARGEST_FILE:
-                raise InputError(f"{path} is larger than {LARGEST_FILE} bytes: that is no policy")
             with safe_open(path, "pt") as file:
                 text = file.metadata() or {}
                 weights = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
@@ -70,9 +69,11 @@ class Artefact:
                 raise InputError(f"{path} holds no policy of format {FORMAT}; python -m agents.train makes one")
             arm = Arm.from_table(tomllib.loads(text["arm"]), path.stem)
             return cls(read_table(json.loads(text["plan"])), arm, weights, json.loads(text["run"]))
-        except OSError as error:
-            raise InputError(f"cannot read {path}: {error.strerror}; name a file that python -m agents.train wrote") from None
-        except (SafetensorError, KeyError, json.JSONDecodeError, tomllib.TOMLDecodeError) as error:
+        except InputError:
+            raise
+        except OSError:
+            raise InputError(f"{path}: cannot be read; check its permissions") from None
+        except (SafetensorError, KeyError, ValueError, TypeError, AttributeError, RecursionError) as error:
             raise InputError(f"{path} is no policy ({error}); python -m agents.train makes one") from None
 
     def agent(self, interval: float = 1.0 / RATE) -> LearnedPolicy:

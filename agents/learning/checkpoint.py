@@ -15,11 +15,12 @@ from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
 from agents.learning.episodes import EpisodeVecEnv
 from flexarm_env.errors import InputError
-from flexarm_env.files import write_whole
+from flexarm_env.files import read_whole, write_whole
 
 #: A checkpoint begins with this and the SHA-256 of what follows, so that no damaged one is read.
 MARK = b"flexarm-checkpoint-1\n"
 DIGEST = hashlib.sha256().digest_size
+LARGEST_FILE = 1_000_000_000
 
 
 def write_checkpoint(path: Path, model: BaseAlgorithm, env: EpisodeVecEnv, run: dict[str, Any]) -> None:
@@ -52,10 +53,7 @@ def read_checkpoint(path: Path) -> dict[str, Any]:
     Raises:
         InputError: for a file that is no checkpoint.
     """
-    try:
-        whole = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror}; delete it to start anew") from None
+    whole = read_whole(path, LARGEST_FILE, "delete it to start anew")
     content = whole[len(MARK) + DIGEST :]
     if whole != sealed(content):
         raise InputError(f"{path} is no checkpoint, or a damaged one; delete it to start anew")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import tomllib
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from pathlib import Path
@@ -11,9 +10,8 @@ from typing import Any
 
 from agents.learning.options import Plan
 from flexarm_env.errors import InputError
+from flexarm_env.files import read_toml
 from flexarm_env.wrappers.options import read_options
-
-LARGEST_FILE = 100_000
 
 
 def read_plan(path: Path) -> Plan:
@@ -22,16 +20,11 @@ def read_plan(path: Path) -> Plan:
     Raises:
         InputError: one line that names the file, the key, and how to mend it.
     """
+    table = read_toml(path, "name one such as configs/agents/ppo_slew.toml")
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise InputError(f"{path} is larger than {LARGEST_FILE} bytes: that is no configuration")
-        return read_table(tomllib.loads(path.read_bytes().decode("utf-8")))
+        return read_table(table)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"{path} is not TOML: {error}") from None
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror}; name one such as configs/agents/ppo_slew.toml") from None
 
 
 def read_table(table: Mapping[str, Any]) -> Plan:

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import argparse
 import fnmatch
-import os
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
-    os.environ.setdefault(variable, "1")
-
-from benchmarks.hidden_effects import baselines, sindy, table  # noqa: E402
-from benchmarks.hidden_effects.calibrate import calibrate  # noqa: E402
-from benchmarks.hidden_effects.cases import cases, sample  # noqa: E402
-from benchmarks.hidden_effects.run import by_diagnosis, run  # noqa: E402
+from benchmarks.hidden_effects import baselines, sindy, table
+from benchmarks.hidden_effects.calibrate import calibrate
+from benchmarks.hidden_effects.cases import cases, sample
+from benchmarks.hidden_effects.run import by_diagnosis, run
+from flexarm_env.terminal.program import Program
 
 METHODS = {
     "diagnose": by_diagnosis,
@@ -26,7 +24,7 @@ METHODS = {
 RESULTS = Path(__file__).resolve().parents[2] / "results" / "hidden_effects"
 
 
-def _options() -> argparse.Namespace:
+def _options(arguments: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.hidden_effects", description=__doc__)
     parser.add_argument("--seed", type=int, default=1, help="of the cases; 1 to 8 have been looked at")
     parser.add_argument("--method", choices=METHODS, default="diagnose", help="that answers them")
@@ -40,15 +38,16 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--output", type=Path, default=RESULTS, help="folder of answers and tables")
     parser.add_argument("--calibrate", action="store_true", help="find the sizes of the effects again instead")
-    asked = parser.parse_args()
+    asked = parser.parse_args(arguments)
     if asked.sample is not None and asked.sample < 1:
         parser.error(f"--sample {asked.sample}: at least 1 case is needed")
     return asked
 
 
-def main() -> None:
+@Program(stopped="stopped; the same command goes on")
+def main(arguments: Sequence[str]) -> None:
     """Answer the requested cases."""
-    asked = _options()
+    asked = _options(arguments)
     began = time.perf_counter()
 
     def say(text: str) -> None:
@@ -87,4 +86,4 @@ def _write(asked: argparse.Namespace, method: str, answers: list[dict[str, Any]]
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

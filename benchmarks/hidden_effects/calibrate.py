@@ -7,8 +7,6 @@ import json
 import math
 from collections.abc import Callable
 
-from joblib import Parallel, delayed
-
 from benchmarks.hidden_effects.cases import EXPERIMENTS, SIZES, STRENGTHS, Case, in_commands, sizes
 from benchmarks.hidden_effects.effects import CATALOGUE, OUTSIDE, Hidden
 from flexarm_env import Arm
@@ -16,6 +14,7 @@ from flexarm_env.files import write_whole
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.error_measure import score
+from flexarm_env.identify.workers import Workers
 
 #: Relative tolerance of a strength, largest number of trials, and largest accepted deviation (a logarithm).
 NEAR, TRIALS, MISSED = 0.15, 5, 0.35
@@ -80,8 +79,8 @@ def calibrate(pattern: str, jobs: int, say: Callable[[str], None]) -> None:
     everything = CATALOGUE | OUTSIDE
     found = dict(sizes()) if SIZES.exists() else {}
     chosen = [name for name in everything if fnmatch.fnmatchcase(name, pattern)]
-    tasks = (delayed(find)(effect, everything[effect]) for effect in chosen)
-    for effect, by_strength in Parallel(n_jobs=jobs, return_as="generator")(tasks):
+    tasks = [(find, (effect, everything[effect])) for effect in chosen]
+    for effect, by_strength in Workers(jobs).spread(tasks):
         found[effect] = by_strength
         say(f"{effect}: {by_strength}")
     found = {effect: found[effect] for effect in everything}

@@ -8,11 +8,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
-from joblib import Parallel, delayed
-
 import flexarm_env
 from flexarm_env import Arm, Recording, diagnose
-from flexarm_env.files import write_whole
+from flexarm_env.files import read_json, write_whole
+from flexarm_env.identify.workers import Workers
 from flexarm_env.terminal.provenance import commit
 
 Method = Callable[[Arm, Sequence[Recording]], dict[str, Any]]
@@ -40,7 +39,7 @@ def by_diagnosis(arm: Arm, recordings: Sequence[Recording]) -> dict[str, Any]:
 def _answer(case: Case, method: Method, folder: Path) -> dict[str, Any]:
     path = folder / f"{case.name}.json"
     if path.exists():
-        kept: dict[str, Any] = json.loads(path.read_text())
+        kept = read_json(path, "delete it, and it is made anew")
         if kept["case"].items() >= json.loads(json.dumps(case.as_json())).items():
             return kept
     posed, arm, recordings = case.pose()
@@ -67,9 +66,9 @@ def run(
     """
     folder.mkdir(parents=True, exist_ok=True)
     answers = []
-    tasks = [delayed(_answer)(case, method, folder) for case in cases]
+    tasks = [(_answer, (case, method, folder)) for case in cases]
     # Stored answers take no time, from which joblib would infer to hand out long cases in large batches.
-    for answer in Parallel(n_jobs=jobs, return_as="generator", batch_size=1)(tasks):
+    for answer in Workers(jobs, batch=1).spread(tasks):
         answers.append(answer)
         say(len(answers), answer)
     return answers

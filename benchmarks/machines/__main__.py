@@ -3,40 +3,39 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
-    os.environ.setdefault(variable, "1")
-
-from benchmarks.hidden_effects.run import run  # noqa: E402
-from benchmarks.machines import table  # noqa: E402
-from benchmarks.machines.cases import keys  # noqa: E402
-from benchmarks.machines.lacks import COUNTS  # noqa: E402
-from benchmarks.machines.method import by_diagnosis_or_failure  # noqa: E402
+from benchmarks.hidden_effects.run import run
+from benchmarks.machines import table
+from benchmarks.machines.cases import keys
+from benchmarks.machines.lacks import COUNTS
+from benchmarks.machines.method import by_diagnosis_or_failure
+from flexarm_env.terminal.program import Program
 
 RESULTS = Path(__file__).resolve().parents[2] / "results" / "machines"
 
 
-def _options() -> argparse.Namespace:
+def _options(arguments: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.machines", description=__doc__)
     parser.add_argument("--seed", type=int, default=1, help="of the cases; below 100 for development")
     parser.add_argument("--count", type=int, default=96, help="cases, a multiple of 16 to have each kind in its share")
     parser.add_argument("--kind", choices=COUNTS, help="cases of this kind only; no table is written")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--out", type=Path, default=RESULTS, help="folder of answers and tables, by seed")
-    asked = parser.parse_args()
+    asked = parser.parse_args(arguments)
     if asked.count < 1:
         parser.error(f"--count {asked.count}: at least 1 case is needed")
     return asked
 
 
-def main() -> None:
+@Program(stopped="stopped; the same command goes on")
+def main(arguments: Sequence[str]) -> None:
     """Answer the requested cases."""
-    asked = _options()
+    asked = _options(arguments)
     began = time.perf_counter()
     chosen = keys(asked.seed, asked.count, asked.kind)
     folder = asked.out / f"seed-{asked.seed}"
@@ -56,4 +55,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

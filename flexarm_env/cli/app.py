@@ -44,7 +44,7 @@ def inspect(
     report: Report = None,
     json: Json = None,
 ) -> None:
-    """Look at recordings first: signals, faults of sensors and units, and what they can show. Exit code 1 for a fault."""
+    """Look at recordings first: signals, faults, and what they can show. Exit code 1 for a fault, or too little."""
     given = arguments.Given(recordings, arm, columns, effects)
     from flexarm_env.cli.answers import hand_out, inspect_restart
     from flexarm_env.recordings.clock import RestartError
@@ -64,7 +64,7 @@ def inspect(
         from flexarm_env.terminal.inspection_report import write_inspection
 
         write_inspection(report, found, given.command_line("inspect") | provenance("inspect", arm, runs, None))
-    if found.inspection.faults:
+    if not found.is_sound:
         raise typer.Exit(1)
 
 
@@ -160,10 +160,11 @@ def add(
     json: Json = None,
 ) -> None:
     """Add one effect to an arm and refit: error before, refitted, after. Exit code 1 if it does not fall."""
-    own = [effect] if ".py:" in effect else []
+    from flexarm_env.effects.catalogue import is_of_file, load_effect
+
+    own = [effect] if is_of_file(effect) else []
     model, runs = arguments.Given(recordings, arm, columns, [*(effects or []), *own]).load(json, save=save)
     from flexarm_env.cli.answers import hand_out
-    from flexarm_env.effects.catalogue import load_effect
     from flexarm_env.terminal import identification, plain_data, tables
 
     arguments.show_faults(identification.faults(model, runs))

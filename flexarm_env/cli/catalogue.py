@@ -10,7 +10,7 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from flexarm_env.effects import Catalogue, Effect, catalogue
-from flexarm_env.effects.catalogue import LAW_PORTS, load_effect
+from flexarm_env.effects.catalogue import LAW_PORTS, is_of_file, load_effect
 from flexarm_env.pictures import words
 from flexarm_env.terminal import outputs, tables
 
@@ -20,7 +20,7 @@ _FIELDS = ("equation", "looks_like", "confused_with", "source", "needs")
 def show(name: str | None, json: Path | None) -> None:
     """Print the catalogue, or one effect; write it as JSON where a file is named."""
     known = catalogue()
-    if name is not None and ".py:" in name:
+    if name is not None and is_of_file(name):
         effect = load_effect(name)
         known, name = known.extended(effect), effect.name
     chosen = list(known.values()) if name is None else [known[name]]

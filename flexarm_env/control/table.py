@@ -15,6 +15,8 @@ from flexarm_env.sensors import known_sensors
 
 _GAINS = ("proportional", "integral", "derivative")
 _TIMES = ("filter", "derivative_filter", "derivative_span")
+#: Largest times and rates: a law keeps the readings and commands of a time. Largest commands as of a drive.
+_LARGEST = {"s": 10.0, "Hz": 1e6}
 _NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
@@ -66,6 +68,26 @@ def law_table(law: ControlLaw, input_kind: str) -> dict[str, Any]:
         own |= {key: f"{getattr(one, key)!r} s" for key in _TIMES if getattr(one, key)}
         table[one.signal] = own
     return table
+
+
+def odd_units(law: ControlLaw, conditions: Mapping[str, float], input_kind: str) -> str:
+    """Describe the first conditions of units that do not make a gain's; "" for none. A factor without a unit is one of any.
+
+    Args:
+        law: with the names of conditions.
+        conditions: of a recording.
+        input_kind: of the command.
+    """
+    for one in law.feedback:
+        for name, gain in one.gains.items():
+            named = {factor: conditions[factor] for factor in gain if isinstance(factor, str) and factor in conditions}
+            factors = [named.get(factor, 0.0) if isinstance(factor, str) else factor for factor in gain]
+            stated = [factor.unit for factor in factors if isinstance(factor, units.BaseValue) and factor.unit]
+            target = _gain_unit(name, one.signal, INPUTS[input_kind])
+            if named and len(stated) == len(gain) and not units.product_converts(stated, target):
+                listed = " × ".join(f"{key} = {value:g} {getattr(value, 'unit', '')}".rstrip() for key, value in named.items())
+                return f"{listed} is controller.{one.signal}.{name}, which is in {target}"
+    return ""
 
 
 def _feedback(signal: str, given: Any, unit: str) -> Feedback:
@@ -121,8 +143,8 @@ def _number(where: str, given: Any, unit: str) -> float:
         number = units.quantity(given, unit)
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
-    if not (math.isfinite(number) and number >= 0.0):
-        raise InputError(f"{where} is {number}; write a number of {unit} that is not below 0")
+    if not 0.0 <= number <= _LARGEST.get(unit, 1e6):
+        raise InputError(f"{where} = {number:g} {unit} is out of bounds: allowed are 0 to {_LARGEST.get(unit, 1e6):g} {unit}")
     return number
 
 

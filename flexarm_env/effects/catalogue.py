@@ -39,6 +39,8 @@ class Catalogue(Mapping[str, type[Effect]]):
 
     def __getitem__(self, name: str) -> type[Effect]:
         if name not in self._effects:
+            if is_of_file(name):
+                raise InputError(f"effect '{name}' is of a file, which is not loaded here: load_effect, or --effects {name}")
             raise InputError(f"unknown effect '{name}'{did_you_mean(name, self._effects)}")
         return self._effects[name]
 
@@ -82,6 +84,16 @@ def _effects_in(module: object) -> list[type[Effect]]:
     ]
 
 
+def is_of_file(text: str) -> bool:
+    """Whether a text names an effect of a user's file, and none of the catalogue.
+
+    Example:
+        >>> is_of_file("fan_drag.py:FanDrag"), is_of_file("fan_drag.py"), is_of_file("coulomb")
+        (True, True, False)
+    """
+    return ":" in text or text.endswith(".py")
+
+
 def load_effect(spec: str) -> type[Effect]:
     """Load a user's effect from "FILE.py:Name". This runs the file: name only files that you trust.
 
@@ -105,10 +117,17 @@ def load_effect(spec: str) -> type[Effect]:
     except (Exception, SystemExit) as error:
         raise InputError(f"{path} does not load: {type(error).__name__}: {error}") from error
     cloudpickle.register_pickle_by_value(module)  # worker processes cannot import it by its name
-    found = {effect.__name__: effect for effect in _effects_in(module)}
-    if name not in found:
-        raise InputError(f"{path} has no effect '{name}'{did_you_mean(name, found)}")
-    return _with_sources(checked(found[name]))
+    return _with_sources(checked(_chosen(path, name, module)))
+
+
+def _chosen(path: Path, name: str, module: object) -> type[Effect]:
+    """Look up an effect in a user's file."""
+    found = vars(module).get(name)
+    if found is None:
+        raise InputError(f"{path} has no effect '{name}'{did_you_mean(name, [one.__name__ for one in _effects_in(module)])}")
+    if not inspect.isclass(found) or not issubclass(found, Effect) or found is Effect:
+        raise InputError(f"{path}: '{name}' is no effect; write class {name}(Effect), with Effect from flexarm_env.effects")
+    return found
 
 
 def _with_sources(effect: type[Effect]) -> type[Effect]:

@@ -104,6 +104,8 @@ def simulate(
         >>> bool((again.command == square.command).all())
         True
     """
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+        raise InputError(f"seed {seed!r}; give a whole number from 0 up")
     if isinstance(input, str) and input in EXPERIMENTS:
         made = _perform(arm, input, _samples(duration, rate), rate, seed, noise, name or input)
     else:

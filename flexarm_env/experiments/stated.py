@@ -49,7 +49,7 @@ def check_stated(arm: Arm, recording: Recording) -> None:
     stated = dict(stated_by(arm, recording))
     payload = stated.pop(PAYLOAD, 0.0)
     for path, value in stated.items():
-        check_bounds(f"{recording.name} states {path}, which", value, arm.parameter(path))
+        check_bounds(f"{recording.name}: the stated {path}", value, arm.parameter(path).under(arm.input))
     machine = arm.with_values(stated)
     if stated:
         try:
@@ -70,7 +70,7 @@ def _check_units(arm: Arm, recording: Recording) -> None:
         value = recording.conditions.get(name, 0.0)
         if isinstance(value, BaseValue) and value.unit:
             try:
-                quantity(f"{value!r} {value.unit}", arm.parameter(path).unit)
+                quantity(f"{value!r} {value.unit}", arm.parameter(path).under(arm.input).unit)
             except InputError as error:
                 raise InputError(
                     f"{recording.name}: condition '{name}' is {value:g} {value.unit}, and sets {path}: {error}"

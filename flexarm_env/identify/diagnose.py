@@ -68,9 +68,10 @@ def diagnose(
     inspected = inspect_recordings(arm, recordings, settings)
     if inspected.faults:
         return _with_run_facts(at_fault(arm, inspected.faults, settings), [], deadline, seed)
-    notes, too_poor = preflight(dataset)
+    checked = preflight(dataset)
+    notes = list(checked.notes)
     calibrator = Calibrator(nominal, dataset, Workers(jobs, deadline))
-    if too_poor:
+    if checked.too_poor:
         return _with_run_facts(insufficient(arm, calibrator), notes, deadline, seed)
 
     constants.at(0.0, "refitting the constants")

@@ -12,11 +12,12 @@ from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass, field
 from itertools import takewhile
 from multiprocessing import resource_tracker
-from typing import Any
+from typing import Any, Literal
 
 from joblib import Parallel, delayed, parallel_config
 from joblib.externals.loky.backend import resource_tracker as loky_tracker
 
+from flexarm_env.errors import InputError
 from flexarm_env.identify.deadline import Deadline
 
 #: A function and its positional arguments. Both must pickle.
@@ -32,15 +33,21 @@ class Workers:
     Attributes:
         jobs: processes or threads at once.
         deadline: after which no task starts that can be left out.
+        batch: tasks that a process is handed at once, "auto" by the time that the first ones take.
     """
 
     jobs: int = 1
     deadline: Deadline = field(default_factory=Deadline)
+    batch: int | Literal["auto"] = "auto"
+
+    def __post_init__(self) -> None:
+        if isinstance(self.jobs, bool) or not isinstance(self.jobs, int) or self.jobs < 1:
+            raise InputError(f"jobs is {self.jobs!r}; give a whole number from 1 up")
 
     def map(self, tasks: Sequence[Task]) -> Iterator[Any]:
         """Yield the results of tasks in their order, from processes; a single task runs here, in threads."""
         if len(tasks) > 1:
-            yield from self._spread(tasks, "2 * n_jobs")
+            yield from self.spread(tasks)
         elif tasks:
             ((function, arguments),) = tasks
             with self.threads():
@@ -52,11 +59,17 @@ class Workers:
         if len(tasks) < 2 or not math.isfinite(self.deadline.limit):
             yield from () if self.deadline.is_over else self.map(tasks)
         elif not self.deadline.is_over:
-            yield from self._spread(takewhile(lambda task: not self.deadline.is_over, tasks), "n_jobs")  # none waits
+            yield from self.spread(takewhile(lambda task: not self.deadline.is_over, tasks), "n_jobs")  # none waits
 
-    def _spread(self, tasks: Iterable[Task], ahead: str) -> Iterator[Any]:
+    def spread(self, tasks: Iterable[Task], ahead: str = "2 * n_jobs") -> Iterator[Any]:
+        """Yield the results of tasks in their order, from processes that end with this one.
+
+        Args:
+            tasks: functions and their arguments.
+            ahead: tasks that may wait in a process, as joblib writes it.
+        """
         calls = (delayed(function)(*arguments) for function, arguments in tasks)
-        watched = {"initializer": _end_with, "initargs": (os.getpid(),)}
+        watched = {"batch_size": self.batch, "initializer": _end_with, "initargs": (os.getpid(),)}
         with ExitStack() as interrupts:
             interrupts.enter_context(_interrupts_held())
             results = Parallel(n_jobs=self.jobs, return_as="generator", pre_dispatch=ahead, **watched)(calls)

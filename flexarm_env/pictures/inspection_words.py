@@ -32,6 +32,7 @@ COMMON_SCALE = (
     "them. A run with a known payload would show it."
 )
 NOT_READ = "The file cannot be read as one recording, so that nothing else was inspected."
+INSUFFICIENT = "Insufficient for a diagnosis."
 NEAR_THE_TRUTH = "These limits hold for an arm near the truth: the error that it makes now is no part of them."
 
 
@@ -52,7 +53,8 @@ def sentence(found: Overview) -> str:
     """Write what recordings hold and can show in two sentences."""
     if not found.recordings:
         return f"{counted(len(found.inspection.faults), 'fault')}. {NOT_READ}"
-    return f"{faults_sentence(found.inspection.faults, found.recordings)} {_excitation(found.excitation)}"
+    ability = INSUFFICIENT if found.insufficient else _excitation(found.excitation)
+    return f"{faults_sentence(found.inspection.faults, found.recordings)} {ability}"
 
 
 def _excitation(found: Excitation) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import difflib
 import re
 
@@ -19,12 +18,15 @@ _VALUE = re.compile(r"([+-]?+(?:\d++(?:[.,]\d*+)?+|\.\d++)(?:[eE][+-]?+\d++)?+)\
 _LONGEST_UNIT = 10
 
 
-def add_condition(line: str, conditions: dict[str, float]) -> None:
+def add_condition(line: str, conditions: dict[str, float]) -> str:
     """Add the condition that a line such as `# payload = 0.3 kg` or `# payload [kg]: 0.3` states. Other remarks are skipped.
 
     Args:
         line: the remark, with its mark.
         conditions: in SI by name; added to.
+
+    Returns:
+        A note on a line that may be meant as a condition and is none, else "".
 
     Raises:
         InputError: for a condition that comes twice, is misspelt, has no right unit, or is written as a remark.
@@ -33,7 +35,7 @@ def add_condition(line: str, conditions: dict[str, float]) -> None:
     match = _CONDITION.fullmatch(text)
     if match is None or (match[3] == ":" and match[1] not in CONDITIONS):
         _check_remark(text)
-        return
+        return ""
     name, value = match[1], f"{match[4]} {match[2] or ''}".strip()
     if name in conditions:
         raise InputError(f"condition {quoted(name)} comes twice; keep one of the two")
@@ -41,8 +43,18 @@ def add_condition(line: str, conditions: dict[str, float]) -> None:
     if name in CONDITIONS:
         conditions[name] = units.quantity(value, CONDITIONS[name])
     elif units.is_quantity(value):
-        with contextlib.suppress(InputError):  # "# trial = 3 good" is a remark
+        try:
             conditions[name] = units.base_value(value)
+        except InputError as error:  # "# trial = 3 good" is a remark
+            return f"{quoted(text)} is read as a remark: {error}"
+    elif (number := _VALUE.fullmatch(value)) and number[2] and not re.search(r"\s", number[3]):
+        return f"{quoted(text)} is read as a remark: unknown unit {quoted(number[2] + number[3])}"
+    return ""
+
+
+def unit_of(name: str, value: float) -> str:
+    """Look up the unit of a condition, "" where none was stated."""
+    return CONDITIONS.get(name, value.unit if isinstance(value, units.BaseValue) else "")
 
 
 def check_spelling(name: str) -> None:

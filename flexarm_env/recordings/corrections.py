@@ -20,6 +20,9 @@ Floats = NDArray[np.float64]
 #: Entries of a column map that hold for signals alone, and the one that holds for `time`, too.
 SIGNAL_KEYS, TIME_KEYS = ("ignore", "range", "repeats", "wrap", "shift"), ("shift",)
 
+#: Rows for which a reading may be held.
+MOST_HELD = 1_000_000
+
 
 @dataclass(frozen=True)
 class Corrections:
@@ -75,8 +78,10 @@ def read_corrections(entry: Mapping[str, Any], unit: str) -> Corrections:
     """
     ends = _ends(entry["range"], unit) if "range" in entry else None
     repeats = entry.get("repeats", 1)
-    if isinstance(repeats, bool) or not isinstance(repeats, int) or ("repeats" in entry and repeats < 2):
-        raise InputError(f"repeats is {repeats!r}; write the number of rows for which a reading is held, 2 or more")
+    if isinstance(repeats, bool) or not isinstance(repeats, int) or ("repeats" in entry and not 2 <= repeats <= MOST_HELD):
+        raise InputError(
+            f"repeats is {repeats!r}; write the number of rows for which a reading is held, 2 or more, up to {MOST_HELD}"
+        )
     wrap = _quantity("wrap", entry.get("wrap", 0.0), unit)
     if "wrap" in entry and not 0.0 < wrap < math.inf:
         raise InputError(f"wrap is {entry['wrap']!r}; write the size of the jump, such as '6.2832 {unit}'")

@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.recordings.columns import UNITS
-from flexarm_env.recordings.conditions import CONDITIONS
-from flexarm_env.units import BaseValue
+from flexarm_env.recordings.conditions import unit_of
 
 Floats = NDArray[np.float64]
 
@@ -21,16 +20,10 @@ def csv_text(columns: Mapping[str, Floats], conditions: Mapping[str, float]) -> 
         columns: (n,) in SI, by name; NaN leaves a cell empty.
         conditions: in SI.
     """
-    remarks = [f"# {name} = {value!r} {_unit(name, value)}".rstrip() for name, value in conditions.items()]
+    remarks = [f"# {name} = {value!r} {unit_of(name, value)}".rstrip() for name, value in conditions.items()]
     header = ",".join(f"{name} [{UNITS[name]}]" for name in columns)
     rows = zip(*map(_cells, columns.values()), strict=True)
     return "\n".join([*remarks, header, *map(",".join, rows), ""])
-
-
-def _unit(name: str, value: float) -> str:
-    """Look up the unit of a condition, "" where none was stated."""
-    stated = value.unit if isinstance(value, BaseValue) else ""
-    return CONDITIONS.get(name, stated)
 
 
 def _cells(values: Floats) -> list[str]:

@@ -36,7 +36,7 @@ def episodes_of(table: Table, name: str, columns: ColumnMap | None) -> dict[str,
         if columns is None or not columns.episodes or number in columns.episodes:
             values = {column: numbers[start:stop] for column, numbers in table.values.items()}
             own = name if len(first) == 1 else f"{name} episode {number}"
-            found[own] = Table(values, table.sources, table.conditions, range(start + 1, stop + 1))
+            found[own] = Table(values, table.sources, table.conditions, range(start + 1, stop + 1), notes=table.notes)
     return found
 
 

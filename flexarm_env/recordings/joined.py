@@ -119,6 +119,7 @@ def read_joined(path: Path, columns: ColumnMap, gains: Mapping[str, float]) -> t
     main = _command_pattern(columns)
     parts: list[Part] = []
     conditions: dict[str, float] = {}
+    notes: list[str] = []
     checksum = hashlib.sha256()
     clock: float | None = None
     for pattern, sources in _by_file(columns).items():
@@ -136,9 +137,10 @@ def read_joined(path: Path, columns: ColumnMap, gains: Mapping[str, float]) -> t
             raise error if file == path else InputError(f"{file.name}: {error}") from None
         checksum.update(content)
         conditions |= table.conditions
+        notes += table.notes
         parts += _corrected(time, arrays, sources)
     plain = {quantity: Source(quantity, UNITS[quantity]) for quantity in map(quantity_of, columns.sources)}
-    return Table(join(parts), plain, conditions), checksum.hexdigest()
+    return Table(join(parts), plain, conditions, notes=tuple(notes)), checksum.hexdigest()
 
 
 def _check_conditions(found: Mapping[str, float], others: Mapping[str, float]) -> None:

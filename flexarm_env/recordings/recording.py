@@ -220,14 +220,14 @@ class Recording(Shown):
             if layout is not None and layout.joins:
                 table, checksum = read_joined(path, layout, gains)
                 name = run_name(layout, path) or path.resolve().parent.name
-                recordings = [_recording(name, table.values, table.conditions, (), table.sources)]
+                recordings = [_with_notes(_recording(name, table.values, table.conditions, (), table.sources), table.notes)]
             else:
                 content = read_bytes(path)
                 layout = None if layout is None else with_info(path, layout)
                 tables = episodes_of(format_of(path).table(content, layout), path.stem, layout)
                 checksum = hashlib.sha256(content).hexdigest()
                 recordings = [
-                    _recording(name, table.in_si(gains), table.conditions, table.lines, table.sources)
+                    _with_notes(_recording(name, table.in_si(gains), table.conditions, table.lines, table.sources), table.notes)
                     for name, table in tables.items()
                 ]
             for recording in recordings:
@@ -262,7 +262,10 @@ class Recording(Shown):
             ['pulse', 'square']
         """
         layout = None if columns is None else load_columns(columns)
-        files = recording_files([paths] if isinstance(paths, (str, os.PathLike)) else paths, layout)
+        named = [paths] if isinstance(paths, (str, os.PathLike)) else list(paths)
+        if "" in named:
+            raise InputError("a path is empty, which would be this folder; name a file, or '.'")
+        files = recording_files(named, layout)
         recordings = [one for file in files for one in cls.read_each(file, layout, calibration, require_signal)]
         check_episodes(len(recordings), layout)
         return with_distinct_names(recordings)
@@ -357,6 +360,11 @@ def _recording(
         conditions=conditions,
         notes=samples.notes,
     )
+
+
+def _with_notes(recording: Recording, notes: Sequence[str]) -> Recording:
+    """Add notes on the reading of a file."""
+    return replace(recording, notes=(*notes, *recording.notes))
 
 
 def _with_sidecar(recording: Recording, path: Path) -> Recording:

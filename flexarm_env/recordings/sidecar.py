@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,7 @@ from flexarm_env import units
 from flexarm_env.errors import InputError
 from flexarm_env.files import read_toml
 from flexarm_env.recordings.checks import check_conditions
-from flexarm_env.recordings.conditions import CONDITIONS
+from flexarm_env.recordings.conditions import CONDITIONS, unit_of
 from flexarm_env.recordings.messages import file_error
 
 TABLE = "conditions"
@@ -37,7 +38,8 @@ def conditions_beside(path: Path, given: Mapping[str, float]) -> tuple[dict[str,
         raise file_error(path, f"condition '{twice[0]}' comes twice, in the file and in {beside.name}; keep one of the two")
     if not stated:
         return {}, ()
-    return stated, (f"{beside.name} states {', '.join(f'{name} = {value:g}' for name, value in stated.items())}",)
+    listed = ", ".join(f"{name} = {value:g} {unit_of(name, value)}".rstrip() for name, value in stated.items())
+    return stated, (f"{beside.name} states {listed}",)
 
 
 def sidecar_of(path: Path) -> Path | None:
@@ -50,7 +52,7 @@ def sidecar_of(path: Path) -> Path | None:
         InputError: for a file of that name that has neither conditions nor an arm nor a column map.
     """
     beside = path.with_suffix(".toml")
-    if beside == path or not beside.is_file():
+    if beside == path or beside.is_dir() or not os.path.lexists(beside):  # a link to nowhere is no absence
         return None
     table = read_toml(beside)
     if any(key in table for key in _OTHERS):

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from flexarm_env.errors import InputError
+from flexarm_env.files import read_json
 from flexarm_env.identify.explain.compare import compare
 from flexarm_env.identify.progress import Progress, ProgressCallback
 from flexarm_env.pictures import curves
@@ -83,13 +83,11 @@ def run(
 def stored(output: Path, posed: Posed) -> dict[str, Any] | None:
     """Read the answer on a rig that an earlier run wrote; None if there is none of this arm and these recordings."""
     path = output / f"{posed.rig.name}.json"
-    if not path.is_file():
-        return None
     try:
-        answer: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError:
+        answer = read_json(path, "delete it")
+    except InputError:
         return None
-    return answer if isinstance(answer, dict) and answer.get("key") == posed.key else None
+    return answer if answer.get("key") == posed.key else None
 
 
 def _answer(posed: Posed, output: Path, jobs: int, progress: Progress) -> dict[str, Any]:

@@ -85,6 +85,8 @@ def make_folder(folder: Path, *names: str) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot make folder {folder}: {error.strerror}; name another") from None
+    if not os.access(folder, os.W_OK):
+        raise InputError(f"cannot write {folder}: the folder is not writable; name another")
     check_places(None, *(folder / name for name in names))
 
 

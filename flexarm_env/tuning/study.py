@@ -77,7 +77,9 @@ class Study:
                 made = create(params=dict(first), distributions=self.space, value=objective(first))
                 self._study.add_trial(made)
             else:
-                sampler = self._optuna.samplers.TPESampler(seed=SEEDS_EACH * seed + done, n_startup_trials=RANDOM_TRIALS)
+                sampler = self._optuna.samplers.TPESampler(
+                    seed=(SEEDS_EACH * seed + done) % 2**32, n_startup_trials=RANDOM_TRIALS
+                )
                 self._study.sampler = sampler
                 trial = self._study.ask(self.space)
                 try:
@@ -118,5 +120,5 @@ def _begins_as_journal(path: Path) -> bool:
         line = file.readline(LONGEST_LINE)
     try:
         return not line or "op_code" in json.loads(line)
-    except ValueError:
+    except (ValueError, TypeError, RecursionError):
         return False

@@ -35,6 +35,19 @@ def test_results_for_a_folder_that_is_a_file_are_refused_before_the_work(
     assert place.read_text() == "of another"
 
 
+BENCHMARKS = {"benchmarks.__main__": ["--start", "--output"], "benchmarks.fuzz.__main__": ["--files", "1", "--keep"]}
+
+
+@pytest.mark.parametrize("module", BENCHMARKS)
+def test_figures_for_no_place_are_refused_before_they_are_measured(module, tmp_path, capsys) -> None:
+    (tmp_path / "there").write_text("of another")
+    main = pytest.importorskip(module, exc_type=ImportError).main
+    assert main([*BENCHMARKS[module], str(tmp_path / "there" / "figures.json")]) == 2
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n")) == ("", 1)
+    assert "cannot make folder" in err
+
+
 @pytest.mark.parametrize(("save", "words"), [("there/a.gif", "cannot make folder"), ("a.tiff", "name a .gif")])
 def test_a_film_for_no_place_is_refused_before_it_is_made(
     save: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

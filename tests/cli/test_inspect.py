@@ -12,6 +12,7 @@ from cli_stand_ins import needs_plots
 
 from flexarm_env.arm import Arm
 from flexarm_env.experiments.simulate import simulate
+from flexarm_env.recordings.recording import Recording
 
 
 @pytest.fixture(scope="module")
@@ -84,3 +85,48 @@ def test_the_page_is_written_for_faulty_recordings_too(flexarm, folder, tmp_path
 def test_bad_input_exits_2_with_one_line(flexarm, folder):
     assert "driven by current" in flexarm.refused("inspect", folder / "sound", "--arm", "thesis")
     assert "no_such" in flexarm.refused("inspect", folder / "no_such.csv")
+
+
+def held(folder: Path, place: Path, kept: str) -> Path:
+    """Write the square wave with the command, the signals or all held at their first value."""
+    run = Recording.read(folder / "sound" / "square.csv")
+    if kept != "signals":
+        run = replace(run, command=np.full(len(run), run.command[0]))
+    if kept != "command":
+        run = replace(run, signals={signal: np.full(len(run), values[0]) for signal, values in run.signals.items()})
+    run.write(place)
+    return place
+
+
+@pytest.mark.parametrize("kept", ["signals", "all"])
+def test_recordings_without_motion_are_insufficient(flexarm, folder, tmp_path, kept):
+    still = held(folder, tmp_path / "still.csv", kept)
+    assert flexarm("inspect", still, "--arm", "cu-rigid", "--json", tmp_path / "found.json") == 1
+    assert flexarm.out.startswith("No fault in 1 recording. Insufficient for a diagnosis.")
+    assert "nothing moves beyond the noise" in flexarm.out
+    found = json.loads((tmp_path / "found.json").read_text())
+    assert found["insufficient"] is True
+    assert found["excitation"]["effects"] == found["excitation"]["constants"] == {}
+
+
+def test_signals_that_keep_one_value_are_no_rest_of_the_arm(flexarm, folder, tmp_path):
+    words = "still: every signal keeps one value while the command changes"
+    for kept, is_said in (("signals", True), ("all", False)):
+        flexarm("inspect", held(folder, tmp_path / "still.csv", kept), "--arm", "cu-rigid")
+        assert (words in " ".join(flexarm.out.split())) == is_said
+
+
+@pytest.mark.parametrize("command", ["inspect", "compare"])
+def test_a_command_that_keeps_one_value_is_noted(flexarm, folder, tmp_path, command):
+    words = "in every row, which explains a release or a single step alone: was it recorded?"
+    assert flexarm(command, held(folder, tmp_path / "held.csv", "command"), "--arm", "cu-rigid") == 0
+    assert words in " ".join(flexarm.out.split())
+    assert flexarm(command, folder / "sound", "--arm", "cu-rigid") == 0
+    assert words not in " ".join(flexarm.out.split())
+
+
+@pytest.mark.parametrize("rows", [0, 1, 2])
+def test_a_row_or_two_are_refused(flexarm, folder, tmp_path, rows):
+    lines = (folder / "sound" / "square.csv").read_text().splitlines()[: 1 + rows]
+    (tmp_path / "few.csv").write_text("\n".join([*lines, ""]))
+    assert "few" in flexarm.refused("inspect", tmp_path / "few.csv", "--arm", "cu-rigid")

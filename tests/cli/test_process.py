@@ -52,6 +52,26 @@ def test_the_module_runs_as_the_command():
     assert (run.returncode, run.stdout) == (0, process("--version").stdout)
 
 
+@pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&-", "<&-"])
+def test_a_closed_stream_is_no_error(tmp_path, closed):
+    program = "from flexarm_env.cli import main; main()"
+    command = f"{sys.executable} -c '{program}' effects backlash --json {tmp_path / 'x.json'} {closed}"
+    environment = os.environ | {"PYTHONPATH": str(Path(flexarm_env.__file__).parents[1])}
+    run = subprocess.run(command, shell=True, capture_output=True, text=True, env=environment, check=False)
+    assert (run.returncode, run.stderr) == (0, "")
+    assert "backlash" in (tmp_path / "x.json").read_text()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no /dev/full")
+@pytest.mark.parametrize("arguments", ["effects", "--version", "--help"])
+def test_a_full_stdout_is_one_line(arguments):
+    program = "from flexarm_env.cli import main; main()"
+    command = f"{sys.executable} -c '{program}' {arguments} >/dev/full"
+    environment = os.environ | {"PYTHONPATH": str(Path(flexarm_env.__file__).parents[1])}
+    run = subprocess.run(command, shell=True, capture_output=True, text=True, env=environment, check=False)
+    assert (run.returncode, len(run.stderr.splitlines())) == (2, 1)
+
+
 def test_a_reader_that_leaves_early_is_no_error():
     program = "from flexarm_env.cli import main; main()"
     command = f"{sys.executable} -c '{program}' effects | head -1"

@@ -9,6 +9,7 @@ import pytest
 from cli_stand_ins import GOOD_ARM, OWN
 
 import flexarm_env
+from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 
 MAP = """
@@ -134,6 +135,50 @@ def test_an_effect_without_a_docstring_has_a_page(flexarm, tmp_path):
     (tmp_path / "mine.py").write_text(WHOLE)
     assert flexarm("effects", f"{tmp_path / 'mine.py'}:Mine") == 0
     assert "Mine" in flexarm.out
+
+
+NO_EFFECTS = """
+from flexarm_env.effects import Effect
+number = 5
+class Other: pass
+class Bare(Effect): pass
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("Nope", "has no effect 'Nope'"),
+        ("", "has no effect ''"),
+        ("Other", "'Other' is no effect; write class Other(Effect)"),
+        ("number", "'number' is no effect"),
+        ("Effect", "'Effect' is no effect"),
+        ("Bare", "effect Bare lacks 'name'"),
+    ],
+)
+def test_a_class_that_is_no_effect_is_refused_wherever_one_is_named(flexarm, runs, tmp_path, name, words):
+    (tmp_path / "mine.py").write_text(NO_EFFECTS)
+    spec = f"{tmp_path / 'mine.py'}:{name}"
+    named = ("--effects", spec)
+    places = [
+        ("effects", spec),
+        ("add", spec, runs),
+        ("compare", runs, *named),
+        ("diagnose", runs, *named),
+        ("inspect", runs, *named),
+    ]
+    places += [("fit", runs, *named), ("simulate", "--save", tmp_path / "x.csv", *named), ("tune", "lqg", *named)]
+    for arguments in places:
+        assert words in flexarm.refused(*arguments), arguments
+
+
+def test_a_file_of_effects_without_a_class_is_no_name_of_the_catalogue(flexarm, runs, tmp_path):
+    file = tmp_path / "mine.py"
+    file.write_text(OWN)
+    for arguments in (("effects", file), ("add", file, runs), ("compare", runs, "--effects", file)):
+        assert "write FILE.py:Name" in flexarm.refused(*arguments)
+    with pytest.raises(InputError, match="is of a file, which is not loaded here"):
+        Arm.load("thesis").with_effect(f"{file}:Mine", size=0.1)
 
 
 def test_an_effect_that_cannot_be_added_is_refused(flexarm, identify, runs, tmp_path):

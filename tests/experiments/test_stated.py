@@ -33,7 +33,7 @@ def test_each_recording_is_replayed_with_its_own_value():
     assert compare(arm, runs).free_run < 1e-6
     assert compare(replace(arm, conditions={}), runs).free_run > 10.0
     notes = compare(arm, runs).notes
-    assert f"heavy: hub.inertia is {3 * arm.value(INERTIA):g}, as the recording states" in notes
+    assert f"heavy: hub.inertia is {3 * arm.value(INERTIA):g} kg*m**2, as the recording states" in notes
 
 
 def test_commands_are_played_with_the_conditions_of_their_recording():
@@ -100,7 +100,7 @@ def test_a_wrong_condition_is_refused(tmp_path, line, words):
 
 def test_a_value_out_of_bounds_is_refused():
     arm = rigid()
-    with pytest.raises(InputError, match=r"heavy states hub\.inertia, which = -1 kg\*m\*\*2 is out of bounds"):
+    with pytest.raises(InputError, match=r"heavy: the stated hub\.inertia = -1 kg\*m\*\*2 is out of bounds"):
         compare(arm, [replace(loaded(arm, "heavy", 3.0), conditions={"load": -1.0})])
 
 

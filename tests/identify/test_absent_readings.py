@@ -152,8 +152,8 @@ def test_motion_that_was_not_measured_is_none(arm):
     pulse = simulate(arm, "pulse", duration=2.0, rate=RATE, seed=1)
     begins = float(pulse.time[np.argmax(np.abs(pulse.command) > 0.0)])
     assert begins > 0.2
-    assert preflight(prepare(arm, [pulse])[1])[1] is False
-    assert preflight(prepare(arm, [ignored(pulse, ALL, begins, 9.0)])[1])[1] is True
+    assert preflight(prepare(arm, [pulse])[1]).too_poor is False
+    assert preflight(prepare(arm, [ignored(pulse, ALL, begins, 9.0)])[1]).too_poor is True
 
 
 def test_the_torque_on_the_hub_is_estimated_from_what_there_is(arm, run):

@@ -19,6 +19,7 @@ from flexarm_env.plant.plant import NO_GAINS, NO_INTERVALS, NOT_MEASURED
 from flexarm_env.terminal import plain_data, tables
 from flexarm_env.terminal.inputs import read_recordings
 from flexarm_env.thesis_drive import DERIVATIVE, GEAR_RATIO, PROPORTIONAL
+from flexarm_env.units import base_value
 
 #: The law of simulated experiments on the thesis's arm, which is fed with noisy readings in steps of the sensor.
 PD = ControlLaw((Feedback("arm_angle", (PROPORTIONAL,)), Feedback("motor_speed", (DERIVATIVE,))))
@@ -169,6 +170,24 @@ def test_what_the_law_needs_and_the_recording_lacks_is_named():
     assert compare(arm, [replace(run, conditions={"K1": PROPORTIONAL})]).closed_loop is not None
     silent = replace(run, signals={"arm_angle": run.signals["arm_angle"]}, conditions={"K1": PROPORTIONAL})
     assert "the control law needs motor_speed," in compare(arm, [silent]).notes[0]
+
+
+@pytest.mark.parametrize(
+    ("stated", "is_replayed", "is_named"),
+    [
+        (f"{PROPORTIONAL} A/rad", True, False),
+        (f"{PROPORTIONAL} V/rad", True, False),  # the recorded command tells that the number is right
+        (f"{3 * PROPORTIONAL} V/rad", False, True),
+        (f"{PROPORTIONAL} A/deg", False, False),
+    ],
+)
+def test_the_unit_of_a_stated_gain_is_named_where_the_law_fails(stated, is_replayed, is_named):
+    arm = thesis(ControlLaw((Feedback("arm_angle", ("K1",)), Feedback("motor_speed", (DERIVATIVE,)))))
+    run = replace(simulate(arm, "square", duration=2.0, rate=200.0), conditions={"K1": base_value(stated)})
+    found = compare(arm, [run])
+    assert (found.closed_loop is not None) == is_replayed
+    words = f"is a unit wrong? K1 = {3 * PROPORTIONAL:g} V/rad is controller.arm_angle.proportional, which is in A/rad"
+    assert any(words in note for note in found.notes) == is_named
 
 
 def test_a_recording_without_a_reference_is_replayed_under_its_command():

@@ -207,6 +207,7 @@ def test_corrections_come_after_unit_sign_and_scale(tmp_path: Path) -> None:
         ({"repeats": 1}, "repeats is 1; write the number of rows"),
         ({"repeats": "10"}, "repeats is '10'"),
         ({"repeats": True}, "repeats is True"),
+        ({"repeats": 10**30}, "repeats is 1000000000000000000000000000000; write the number of rows"),
         ({"wrap": 0}, "wrap is 0; write the size of the jump, such as '6.2832 rad'"),
         ({"wrap": "1 s"}, "wrap: "),
         ({"wrap": [1]}, "wrap is [1]"),

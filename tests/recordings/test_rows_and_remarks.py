@@ -247,3 +247,23 @@ def test_no_line_before_the_numbers_takes_longer_than_it_is(line: str) -> None:
 def test_no_quantity_takes_longer_than_it_is(text: str) -> None:
     for filler in LONG:
         assert seconds(text, filler, units.is_quantity) < 1, filler
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("# res = 4.2 ohmm", "row 1: 'res = 4.2 ohmm' is read as a remark: unknown unit 'ohmm'"),
+        ("# kp = 6 V/radd", "unknown unit 'V/radd'"),
+        ("# rotor = 30 gcm2", "'rotor = 30 gcm2' is read as a remark: unknown unit 'gcm2'"),
+        ("# rotor = 30 g cm^2", ""),
+        ("# kp = 6", ""),
+        ("# day = 2024-05-01", ""),
+        ("# at = 10:30", ""),
+        ("# part = 3 of 12 runs", ""),
+        ("# rig: no. 5", ""),
+    ],
+)
+def test_a_condition_of_an_unknown_unit_is_noted(tmp_path, line, words):
+    (tmp_path / "run.csv").write_text(f"{line}\n{GOOD}")
+    notes = Recording.read(tmp_path / "run.csv").notes
+    assert words in notes[0] if words else notes == ()

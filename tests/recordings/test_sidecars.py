@@ -16,7 +16,7 @@ def test_conditions_beside_a_recording_are_its_own(tmp_path):
     save(tmp_path, STATED, "run.toml")
     run = Recording.read(save(tmp_path, GOOD))
     assert run.conditions == {"payload": 0.3, "kp": 400.0, "supply": 7.4, "torque_enabled": 1.0}
-    assert run.notes == ("run.toml states payload = 0.3, kp = 400, supply = 7.4, torque_enabled = 1",)
+    assert run.notes == ("run.toml states payload = 0.3 kg, kp = 400, supply = 7.4 V, torque_enabled = 1",)
     assert Recording.read(save(tmp_path, GOOD, "other.csv")).conditions == {}
     (listed, other) = Recording.read_all(tmp_path)
     assert (listed.name, other.name) == ("other", "run")

@@ -37,6 +37,13 @@ def test_one_seed_gives_one_answer_and_another_another() -> None:
     assert studies[0].best() == studies[1].best() != studies[2].best()
 
 
+@pytest.mark.parametrize("seed", [2**32 - 1, 10**30])
+def test_a_seed_of_any_size_is_one(seed) -> None:
+    study = Study("bowl", SPACE)
+    study.run(3, seed, bowl)
+    assert len(study.finished()) == 3
+
+
 def test_a_stopped_search_goes_on_as_if_it_had_not_stopped(tmp_path) -> None:
     calls = []
 

@@ -49,7 +49,8 @@ def _estimate(parameter: FitParameter, x: float, half_width: float, nominal: Arm
     section, *rest = parameter.path.split(".")
     known = section != "effects" or rest[0] in nominal.effects
     before = nominal.value(parameter.path) if known else float(nominal.known[rest[0]].parameters[rest[1]].null or 0.0)
-    return Estimate(parameter.path, parameter.value(x), low, high, nominal.parameter(parameter.path).unit, before)
+    unit = nominal.parameter(parameter.path).under(nominal.input).unit
+    return Estimate(parameter.path, parameter.value(x), low, high, unit, before)
 
 
 def _left_by(calibration: Calibration) -> Floats:

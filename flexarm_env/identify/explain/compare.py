@@ -53,7 +53,7 @@ def compare(
         True
     """
     reduced, dataset = prepare(arm, recordings, settings, rate)
-    notes, _ = preflight(dataset)
+    notes = list(preflight(dataset).notes)
     plants = dataset.plants(reduced)
     observers = {stated: window_observers(reduced, plant, dataset) for stated, plant in plants.items()}
     replays = []

@@ -93,4 +93,7 @@ def _limit(base: Baseline, name: str, without: _Windows, dataset: Dataset) -> De
     # An offset of a sensor moves the state itself, which observers follow slowly.
     begun = () if base.arm.known[name].per_sensor else without.begun
     found = smallest_detectable(base, name, lambda arm: without.rise_to(_Windows.of(arm, dataset, begun)))
-    return None if found is None else DetectionLimit(found.key, found.value, base.arm.known[name].parameters[found.key].unit)
+    if found is None:
+        return None
+    parameter = base.arm.known[name].parameters[found.key]
+    return DetectionLimit(found.key, found.value, parameter.under(base.arm.input).unit)

@@ -35,7 +35,6 @@ from flexarm_env.identify.replay.scales import torque_scale
 from flexarm_env.identify.select.effect_size import Rise, sizeable, smallest_detectable
 from flexarm_env.identify.select.signatures import Baseline, baseline_of
 from flexarm_env.identify.settings import FAILED_ERROR, LEAST_NORM, SETTINGS, Settings
-from flexarm_env.parameters import INPUTS, Parameter
 from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
@@ -180,17 +179,9 @@ def _effect(base: Baseline, name: str, rise_of: Rise) -> EffectExcitation:
     key = found.key if found else next(key for key, p in known.items() if p.null is not None)
     parameter = known[key]
     typical = parameter.typical * parameter.scaled_by(dataset.scales)
-    unit = _unit(parameter, base.arm)
+    unit = parameter.under(base.arm.input).unit
     falls = parameter.null == math.inf
     sizes = math.inf if found is None else typical / found.value if falls else found.value / typical
     if found is None or sizes > dataset.settings.excitation.most_sizes:
         return EffectExcitation(name, key, None, typical, unit, math.inf, falls, NOT_EXCITED)
     return EffectExcitation(name, key, found.value, typical, unit, sizes, falls, DETECTABLE if sizes <= 1 else TOO_SMALL)
-
-
-def _unit(parameter: Parameter, arm: Arm) -> str:
-    """Name the unit of a parameter; the catalogue leaves that of a command open."""
-    command = INPUTS[arm.input]
-    if not parameter.of_command:
-        return parameter.unit
-    return command + parameter.unit.removeprefix("1") if parameter.unit.startswith("1/") else parameter.unit or command

@@ -14,6 +14,7 @@ from flexarm_env.identify.inspect.mend import mended
 from flexarm_env.identify.inspect.motion import motion_faults, moves_as_model
 from flexarm_env.identify.inspect.series import Inspected
 from flexarm_env.identify.inspect.signal_facts import SignalFacts, sensor_noise, signal_facts
+from flexarm_env.identify.replay.dataset import check_given
 from flexarm_env.identify.replay.reading_noise import NoiseBySignal
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.recordings.recording import Recording
@@ -54,6 +55,9 @@ def inspect_recordings(arm: Arm, recordings: Sequence[Recording], settings: Sett
     Returns:
         The faults found, and facts on the signals.
 
+    Raises:
+        InputError: for what is no arm or no list of recordings.
+
     Example:
         >>> import numpy as np
         >>> from dataclasses import replace
@@ -66,6 +70,7 @@ def inspect_recordings(arm: Arm, recordings: Sequence[Recording], settings: Sett
         >>> [(fault.kind, fault.signal, fault.value) for fault in inspect_recordings(arm, [replace(run, signals=cut)]).faults]
         [('rail', 'strain_base', 1.5)]
     """
+    check_given(arm, recordings)
     began = time.perf_counter()
     faults: list[Fault] = []
     sound: list[Recording] = []

@@ -20,6 +20,8 @@ from flexarm_env.parameters import INPUTS, reading_noise
 from flexarm_env.recordings.clock import RestartError
 from flexarm_env.recordings.recording import Recording
 
+NO_EXCITATION = Excitation((), (), "")
+
 
 @dataclass(frozen=True)
 class Overview:
@@ -31,6 +33,7 @@ class Overview:
         inspection: facts on their signals, and the faults found.
         excitation: limits before any fit.
         notes: a line each on noise, sampling and conditions.
+        insufficient: whether they are too poor for a diagnosis.
     """
 
     arm: Arm
@@ -38,6 +41,12 @@ class Overview:
     inspection: Inspection
     excitation: Excitation
     notes: tuple[str, ...] = ()
+    insufficient: bool = False
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether the recordings can be diagnosed: without a fault, and sufficient."""
+        return not (self.inspection.faults or self.insufficient)
 
     def as_json(self) -> dict[str, Any]:
         """Convert to plain data, SI units beside the values."""
@@ -45,6 +54,7 @@ class Overview:
             "extents": {one.name: _extent(one) for one in self.recordings},
             "signals": [self._signal(facts) for facts in self.inspection.signals],
             "notes": list(self.notes),
+            "insufficient": self.insufficient,
             "faults": [fault.as_json() for fault in self.inspection.faults],
             "excitation": self.excitation.as_json(),
         }
@@ -87,13 +97,15 @@ def overview(
     signals.at(0.0, "signals")
     inspection = inspect_recordings(arm, recordings, settings) if inspection is None else inspection
     reduced, dataset = prepare(arm, recordings, settings, noises=inspection.noises)
-    notes, _ = preflight(dataset)
-    return Overview(arm, tuple(recordings), inspection, excitation_of(reduced, dataset, limits), tuple(notes))
+    checked = preflight(dataset)
+    # Sizes are measured by the motion: without any they would be of the noise.
+    excitation = NO_EXCITATION if checked.too_still else excitation_of(reduced, dataset, limits)
+    return Overview(arm, tuple(recordings), inspection, excitation, checked.notes, checked.too_poor)
 
 
 def overview_of_restart(arm: Arm, error: RestartError) -> Overview:
     """Build the overview of a file whose clock starts again: its fault alone, since it cannot be read as one recording."""
-    return Overview(arm, (), Inspection((restart(error),), (), (), 0.0), Excitation((), (), ""))
+    return Overview(arm, (), Inspection((restart(error),), (), (), 0.0), NO_EXCITATION)
 
 
 def stated_noise(arm: Arm, signal: str) -> float | None:

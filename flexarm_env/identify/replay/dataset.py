@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,6 +106,21 @@ class Dataset:
         return replace(self, runs=tuple(replace(run, train=np.ones_like(run.train)) for run in self.runs))
 
 
+def check_given(arm: Any, recordings: Any) -> None:
+    """Refuse what is no arm, and what is no list of recordings, such as one alone or the name of a file.
+
+    Raises:
+        InputError: for such an argument.
+    """
+    if not isinstance(arm, Arm):
+        raise InputError(f"the arm is {str(arm)[:40]!r}, of type {type(arm).__name__}; give an Arm, such as Arm.load('thesis')")
+    listed = recordings if isinstance(recordings, list | tuple) else [recordings]
+    other = next((one for one in listed if not isinstance(one, Recording)), None)
+    if other is not None or not isinstance(recordings, Sequence):
+        kind = type(recordings if other is None else other).__name__
+        raise InputError(f"recordings: {kind} where a list of Recording belongs; give [recording], or Recording.read_all(paths)")
+
+
 def prepare(
     arm: Arm,
     recordings: Sequence[Recording],
@@ -127,6 +143,7 @@ def prepare(
     Raises:
         InputError: for recordings that do not fit the arm, or under whose commands and times it moves beyond any arm.
     """
+    check_given(arm, recordings)
     if not recordings:
         raise InputError("no recordings: name at least one CSV file or a folder of them")
     signals = [s for s in arm.signals if all(s in r.signals for r in recordings)]

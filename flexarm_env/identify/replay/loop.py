@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.control.law import FOLLOWS, ControlLaw, RunningLaw
+from flexarm_env.control.table import odd_units
 from flexarm_env.identify.settings import Preparation
 from flexarm_env.recordings.recording import Recording
 
@@ -90,7 +91,9 @@ def find_loop(
     loop = replace(loop, law_error=error, lag=lag * interval, late_error=late)
     note = _law_note(loop, recording)
     if late > numbers.largest_law_error:
-        return None, f"{note}; it is not that of the recording, which is not replayed in closed loop"
+        odd = odd_units(stated, recording.conditions, recording.input_kind)
+        reason = f": is a unit wrong? {odd}" if odd else ""
+        return None, f"{note}; it is not that of the recording, which is not replayed in closed loop{reason}"
     return loop, note
 
 

@@ -2,47 +2,82 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 
 from flexarm_env.experiments.stated import PAYLOAD
 from flexarm_env.identify.replay.dataset import Dataset
+from flexarm_env.identify.replay.run import Run
+from flexarm_env.identify.settings import Preparation
+from flexarm_env.parameters import SECTIONS
 
 
-def preflight(dataset: Dataset) -> tuple[list[str], bool]:
-    """Check recordings before a model is calibrated.
+@dataclass(frozen=True)
+class Preflight:
+    """What a look at recordings says before a model is calibrated.
 
-    Returns:
-        Notes for a person, a line each; and whether the recordings are too poor to judge an arm.
+    Attributes:
+        notes: for a person, a line each.
+        too_short: whether they are too short to judge an arm.
+        too_still: whether nothing moves beyond the noise.
     """
+
+    notes: tuple[str, ...]
+    too_short: bool
+    too_still: bool
+
+    @property
+    def too_poor(self) -> bool:
+        """Whether they are insufficient to judge an arm."""
+        return self.too_short or self.too_still
+
+
+def preflight(dataset: Dataset) -> Preflight:
+    """Check recordings before a model is calibrated."""
     numbers = dataset.settings.preparation
-    notes = list(dataset.notes)
-    for run in dataset.runs:
-        notes += [f"{run.name}: {_stated_note(path, value)}" for path, value in run.stated]
-        if run.loop_note:
-            notes.append(f"{run.name}: {run.loop_note}")
-        if len(run.intervals):
-            notes.append(f"{run.name}: sampled unevenly, {run.intervals.min():.4g} to {run.intervals.max():.4g} s")
-        at_limit = np.abs(run.command) >= numbers.at_limit * np.abs(run.command).max()
-        varies = np.ptp(run.command) > 0.0 and len(np.unique(run.command)) > numbers.fewest_levels
-        if at_limit.mean() > numbers.much_at_limit and varies:
-            notes.append(f"{run.name}: the command stays at its largest value {100 * at_limit.mean():.0f} % of the time")
     length = sum(run.time[-1] for run in dataset.runs)
-    turns = np.array([signal == "motor_speed" for signal in dataset.signals])  # steadily, too
-    motion = max(
-        float((np.where(turns, np.fmax.reduce(np.abs(run.measured), axis=0), run.extent) / dataset.noise).max())
-        for run in dataset.runs
-    )
-    if length < numbers.shortest:
+    motions = [_motion(run, dataset) for run in dataset.runs]
+    checked = Preflight((), length < numbers.shortest, max(motions) < numbers.least_motion)
+    notes = list(dataset.notes)
+    for run, motion in zip(dataset.runs, motions, strict=True):
+        notes += [f"{run.name}: {note}" for note in _notes(run, motion > numbers.least_motion, numbers)]
+    if checked.too_short:
         notes.append(f"only {length:.2g} s of data: record at least 5 s with several starts and stops")
-    if motion < numbers.least_motion:
+    if checked.too_still:
         notes.append(
             "nothing moves beyond the noise: record a run that breaks away both ways, as `flexarm simulate --input square`"
         )
-    return notes, length < numbers.shortest or motion < numbers.least_motion
+    return replace(checked, notes=tuple(notes))
+
+
+def _motion(run: Run, dataset: Dataset) -> float:
+    """Compute the largest motion over the noise; a motor that turns steadily moves, too."""
+    turns = np.array([signal == "motor_speed" for signal in dataset.signals])
+    largest = np.where(turns, np.fmax.reduce(np.abs(run.measured), axis=0), run.extent)
+    return float((largest / dataset.noise).max())
+
+
+def _notes(run: Run, moves: bool, numbers: Preparation) -> list[str]:
+    notes = [_stated_note(path, value) for path, value in run.stated]
+    notes += [run.loop_note] if run.loop_note else []
+    if len(run.intervals):
+        notes.append(f"sampled unevenly, {run.intervals.min():.4g} to {run.intervals.max():.4g} s")
+    at_limit = np.abs(run.command) >= numbers.at_limit * np.abs(run.command).max()
+    varies = np.ptp(run.command) > 0.0
+    if at_limit.mean() > numbers.much_at_limit and varies and len(np.unique(run.command)) > numbers.fewest_levels:
+        notes.append(f"the command stays at its largest value {100 * at_limit.mean():.0f} % of the time")
+    if varies and not np.nanmax(run.extent):
+        notes.append("every signal keeps one value while the command changes: are the sensors connected, and was it recorded?")
+    if moves and not varies:
+        held = f"{float(run.command[0]):g} in every row"
+        notes.append(f"the command is {held}, which explains a release or a single step alone: was it recorded?")
+    return notes
 
 
 def _stated_note(path: str, value: float) -> str:
     """Describe one condition that a recording states of the machine."""
     if path == PAYLOAD:
         return f"the arm carries the {value:g} kg that the recording states as its payload"
-    return f"{path} is {value:g}, as the recording states"
+    section, key = path.split(".")
+    return f"{path} is {value:g} {SECTIONS[section][key].unit}".rstrip() + ", as the recording states"

@@ -33,13 +33,14 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
     """
     lines = text_lines(content)
     layout, skip = _excel(lines, columns or ColumnMap())
-    first, conditions = _preamble(lines, skip)
+    first, conditions, notes = _preamble(lines, skip)
     header, body = _header(lines, first, layout)
     body += bool(header) and body < len(lines) and states_units(lines[body], header, body, layout)
     rows = [row for row in range(body, len(lines)) if not is_blank(lines[row], layout.delimiter)]
     while rows and lines[rows[-1]].lstrip().startswith("#"):
-        _add_remark(lines, rows.pop(), conditions)
-    return replace(read_rows([lines[row] for row in rows], rows, header, body, layout), conditions=conditions)
+        notes += _add_remark(lines, rows.pop(), conditions)
+    table = read_rows([lines[row] for row in rows], rows, header, body, layout)
+    return replace(table, conditions=conditions, notes=tuple(notes))
 
 
 def read_rows(rows: list[str], places: Sequence[int], header: list[str], body: int, layout: ColumnMap) -> Table:
@@ -83,7 +84,7 @@ def read_header(head: bytes) -> list[str]:
     whole, _, _ = head.replace(b"\r", b"\n").rpartition(b"\n")  # the last line may be cut off, within a character, too
     lines = _decode(whole or head).split("\n")
     layout, skip = _excel(lines, ColumnMap())
-    first, _ = _preamble(lines, skip)
+    first, _, _ = _preamble(lines, skip)
     return _header(lines, first, layout)[0]
 
 
@@ -127,21 +128,23 @@ def _excel(lines: Sequence[str], layout: ColumnMap) -> tuple[ColumnMap, int]:
     return found, skip
 
 
-def _preamble(lines: Sequence[str], skip: int) -> tuple[int, dict[str, float]]:
-    """Count the lines before the header, and read the conditions that they state."""
+def _preamble(lines: Sequence[str], skip: int) -> tuple[int, dict[str, float], list[str]]:
+    """Count the lines before the header, and read the conditions that they state, with notes on them."""
     conditions: dict[str, float] = {}
+    notes: list[str] = []
     for row in range(skip, len(lines)):
         line = lines[row].strip()
         if not line.startswith("#") and not is_blank(lines[row]):
-            return row, conditions
-        _add_remark(lines, row, conditions)
+            return row, conditions, notes
+        notes += _add_remark(lines, row, conditions)
     raise InputError("has no header row; write one such as 'time [s],current [A],arm_angle [rad]'")
 
 
-def _add_remark(lines: Sequence[str], row: int, conditions: dict[str, float]) -> None:
-    """Add the condition that a remark states."""
+def _add_remark(lines: Sequence[str], row: int, conditions: dict[str, float]) -> list[str]:
+    """Add the condition that a remark states; return notes on it."""
     try:
-        add_condition(lines[row].strip(), conditions)
+        note = add_condition(lines[row].strip(), conditions)
+        return [f"row {row + 1}: {note}"] if note else []
     except InputError as error:
         raise InputError(f"row {row + 1}: {error}") from None
 
