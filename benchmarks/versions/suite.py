@@ -7,6 +7,7 @@ import re
 import subprocess
 import xml.etree.ElementTree as ET
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +15,9 @@ from benchmarks.versions.environment import Environment
 from benchmarks.versions.requirements import PROJECT
 from flexarm_env.errors import InputError
 
+TESTS = PROJECT / "tests"
+#: The name of the folder tests itself, whose files are beside the folders.
+TOP = "."
 #: Exit codes of pytest after which its counts are complete: all passed, some failed.
 COMPLETE = (0, 1)
 #: Compiled kernels of either environment, kept when the environment is made anew.
@@ -30,14 +34,20 @@ class Counts:
     skipped: dict[str, int]
 
 
-def run_tests(environment: Environment) -> Counts:
-    """Run the fast tests, with a cache of compiled kernels of its own.
+def folders_of_tests() -> list[str]:
+    """List the folders of tests/ that have tests, and TOP."""
+    return sorted({(*file.relative_to(TESTS).parent.parts, TOP)[0] for file in TESTS.rglob("test_*.py")})
+
+
+def run_tests(environment: Environment, folders: Sequence[str]) -> dict[str, Counts]:
+    """Run the fast tests of some folders, with a cache of compiled kernels of its own, and count them by folder.
 
     Raises:
         InputError: if the tests were interrupted.
     """
     report = environment.folder / "tests.xml"
-    command = [environment.python, "-m", "pytest", *WORKERS, f"--junit-xml={report}"]
+    files = [str(file) for folder in folders for file in _files(folder)]
+    command = [environment.python, "-m", "pytest", *WORKERS, f"--junit-xml={report}", *files]
     variables = os.environ | {"XDG_CACHE_HOME": str(CACHES / environment.side)}
     variables.pop("FLEXARM_CACHE", None)
     code = subprocess.run(command, cwd=PROJECT, env=variables, check=False).returncode
@@ -46,17 +56,32 @@ def run_tests(environment: Environment) -> Counts:
     return read_counts(report)
 
 
-def read_counts(report: Path) -> Counts:
-    """Count the tests of a report in JUnit's format, as pytest writes it."""
-    passed, failed, skipped = 0, list[str](), Counter[str]()
+def _files(folder: str) -> list[Path]:
+    return sorted(TESTS.glob("test_*.py")) if folder == TOP else [TESTS / folder]
+
+
+def read_counts(report: Path) -> dict[str, Counts]:
+    """Count the tests of a report in JUnit's format, as pytest writes it, by folder of tests/."""
+    passed, failed, skipped = Counter[str](), dict[str, list[str]](), dict[str, Counter[str]]()
     for case in ET.parse(report).getroot().iter("testcase"):
+        # "tests.cli.test_tune", or nothing and "tests.cli.test_tune" for a file that is skipped whole
+        name = f"{case.get('classname') or ''}.{case.get('name')}".lstrip(".")
+        folder = _folder(name)
         if (skip := case.find("skipped")) is not None:
-            skipped[_reason(skip)] += 1
+            skipped.setdefault(folder, Counter())[_reason(skip)] += 1
         elif case.find("failure") is not None or case.find("error") is not None:
-            failed.append(f"{case.get('classname')}::{case.get('name')}")
+            failed.setdefault(folder, []).append(name)
         else:
-            passed += 1
-    return Counts(passed, tuple(failed), dict(sorted(skipped.items())))
+            passed[folder] += 1
+    return {
+        each: Counts(passed[each], tuple(failed.get(each, ())), dict(sorted(skipped.get(each, {}).items())))
+        for each in sorted(passed.keys() | failed.keys() | skipped.keys())
+    }
+
+
+def _folder(name: str) -> str:
+    second = name.split(".")[1]
+    return TOP if second.startswith("test_") else second
 
 
 def _reason(skip: ET.Element) -> str:

@@ -10,10 +10,10 @@ import pytest
 
 from benchmarks.versions import interpreters, table
 from benchmarks.versions.requirements import PROJECT, direct_requirements, oldest_python
-from benchmarks.versions.suite import read_counts
+from benchmarks.versions.suite import TOP, Counts, folders_of_tests, read_counts
 from flexarm_env.errors import InputError
 
-TESTS = """
+SOME = """
 import pytest
 
 def test_passes():
@@ -79,36 +79,73 @@ def test_the_newest_python_that_starts_is_taken(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("workers", ["0", "1"])
 def test_counts_are_those_of_the_tests(tmp_path, workers):
-    (tmp_path / "test_some.py").write_text(TESTS.replace("{folder}", str(PROJECT.parent / "shared")))
-    (tmp_path / "test_whole.py").write_text(WHOLE)
-    (tmp_path / "pytest.ini").write_text("[pytest]\n")
-    command = [sys.executable, "-m", "pytest", "-n", workers, "--junit-xml=report.xml", "-p", "no:cacheprovider"]
+    folder = tmp_path / "tests" / "some"
+    folder.mkdir(parents=True)
+    (folder / "test_some.py").write_text(SOME.replace("{folder}", str(PROJECT.parent / "shared")))
+    (folder / "test_whole.py").write_text(WHOLE)
+    (tmp_path / "tests" / "test_top.py").write_text("class TestOne:\n    def test_passes(self):\n        pass\n")
+    (tmp_path / "pytest.ini").write_text("[pytest]\naddopts = --import-mode=importlib\n")
+    command = [sys.executable, "-m", "pytest", "-n", workers, "--junit-xml=report.xml", "-p", "no:cacheprovider", "tests"]
     assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 1
     counts = read_counts(tmp_path / "report.xml")
-    assert counts.passed == 1
-    assert {name.rpartition("::")[2] for name in counts.failed} == {"test_fails", "test_error"}
+    assert set(counts) == {"some", TOP}
+    assert counts[TOP] == Counts(1, (), {})
+    assert counts["some"].passed == 1
+    assert set(counts["some"].failed) == {"tests.some.test_some.test_fails", "tests.some.test_some.test_error"}
     missing = "could not import 'no_such_library': No module named 'no_such_library'"
-    assert counts.skipped == {missing: 1, "no folder ../shared": 1}
+    assert counts["some"].skipped == {missing: 1, "no folder ../shared": 1}
 
 
-def run(python: str, failed: tuple[str, ...], left_out: list[str]) -> dict:
+def test_folders_without_tests_are_left_out():
+    found = folders_of_tests()
+    assert {TOP, "cli", "plant"} <= set(found)
+    assert not {"rig", "reference", "inspect"} & set(found)  # the first two have no tests, the last is within identify
+
+
+def run(python: str, *failed: str, folders: tuple[str, ...] = (), left_out: tuple[str, ...] = ()) -> dict:
     versions = dict.fromkeys([*table.SHOWN, "rich"], "1.2")
-    return {"python": python, "requirements": versions, "passed": 7, "failed": failed, "skipped": {"a": 2, "b": 3}} | {
-        "left_out": left_out
+    counts = {"commit": "abc", "passed": 7, "failed": failed, "skipped": {"a": 2, "b": 3}}
+    return {
+        "python": python,
+        "requirements": versions,
+        "left_out": list(left_out),
+        "folders": dict.fromkeys(folders or folders_of_tests(), counts),
     }
 
 
 def test_the_table_has_both_runs_and_what_was_left_out():
-    text = table.markdown({"oldest": run("3.11.0", (), []), "newest": run("3.14.1", ("one",), ["train"])})
-    assert "| oldest | 3.11.0 | 1.2 | 1.2 | 1.2 | 1.2 | 7 | 0 | 5 |" in text
-    assert "| newest | 3.14.1 | 1.2 | 1.2 | 1.2 | 1.2 | 7 | 1 | 5 |" in text
+    count = len(folders_of_tests())
+    text = table.markdown({"oldest": run("3.11.0"), "newest": run("3.14.1", "one", left_out=("train",))})
+    assert f"| oldest | 3.11.0 | 1.2 | 1.2 | 1.2 | 1.2 | {7 * count} | 0 | {5 * count} |" in text
+    assert f"| newest | 3.14.1 | 1.2 | 1.2 | 1.2 | 1.2 | {7 * count} | {count} | {5 * count} |" in text
     assert "`train` with the newest" in text
-    assert "left out" not in table.markdown({"oldest": run("3.11.0", (), [])})
+    assert "were run" not in text
 
 
-def test_a_run_of_one_side_keeps_the_other(tmp_path, monkeypatch):
+def test_the_table_says_what_was_not_run():
+    most = tuple(name for name in folders_of_tests() if name not in ("cli", "plant"))
+    text = table.markdown({"oldest": run("3.11.0", folders=most)})
+    assert "With the oldest versions no tests of cli, plant were run." in text
+    assert "left out" not in text
+
+
+@pytest.fixture
+def record(tmp_path, monkeypatch):
     monkeypatch.setattr(table, "RECORD", tmp_path / "versions" / "versions.json")
-    table.keep("newest", {"python": "3.13.0"})
-    table.keep("oldest", {"python": "3.11.0"})
-    runs = table.keep("newest", {"python": "3.14.0"})
-    assert list(runs.items()) == [("oldest", {"python": "3.11.0"}), ("newest", {"python": "3.14.0"})]
+
+
+@pytest.mark.usefixtures("record")
+def test_a_run_of_one_side_keeps_the_other():
+    table.keep({"newest": run("3.13.0")})
+    runs = table.keep({"oldest": run("3.11.0", "one")})
+    assert list(runs) == ["oldest", "newest"]
+    assert runs["newest"]["python"] == "3.13.0"
+
+
+@pytest.mark.usefixtures("record")
+def test_a_run_of_some_folders_keeps_the_others_of_the_same_versions():
+    table.keep({"oldest": run("3.11.0", "one", folders=("cli", "plant"))})
+    runs = table.keep({"oldest": run("3.11.0", folders=("plant",))})
+    assert {name: len(each["failed"]) for name, each in runs["oldest"]["folders"].items()} == {"cli": 1, "plant": 0}
+    runs = table.keep({"oldest": run("3.11.1", folders=("plant",))})
+    assert list(runs["oldest"]["folders"]) == ["plant"]
