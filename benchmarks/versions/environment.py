@@ -40,10 +40,8 @@ class Environment:
         """
         _do([interpreter, "-m", "venv", "--clear", str(self.folder)])
         wanted = [str(each) for each in self.requirements]
-        if self.side == "oldest":
-            self._pip("--constraint", str(self._lowest(wanted)), *wanted, "--editable", str(PROJECT))
-        else:
-            self._pip("--upgrade", *wanted, "--editable", str(PROJECT))
+        lowest = ["--constraint", str(self._lowest(wanted))] if self.side == "oldest" else []
+        self._pip(*lowest, *wanted, "--editable", str(PROJECT))
 
     def versions(self) -> dict[str, str]:
         """Gather the installed version of every direct requirement."""
@@ -64,7 +62,7 @@ class Environment:
         return place
 
     def _pip(self, *arguments: str) -> None:
-        _do([self.python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *arguments])
+        _do([self.python, "-m", "pip", "install", "--quiet", "--quiet", "--disable-pip-version-check", *arguments])
 
 
 def _do(command: list[str], text: str = "") -> str:
