@@ -12,7 +12,7 @@ export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 export MPLBACKEND ?= Agg
 
-.PHONY: help demo thesis test libraries lint bench tune baselines robustness policies train results docs clean clean-cache
+.PHONY: help demo thesis test versions libraries lint bench tune baselines robustness policies train results docs clean clean-cache
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 22
@@ -25,6 +25,9 @@ thesis: $(PLOTS) ## check the thesis's claims and draw its figures again in resu
 
 test: $(DEV) ## run the tests; SLOW=1 adds the slow ones, after the others
 	$(BIN)/python -m pytest -n auto --maxprocesses 8 --dist worksteal $(if $(SLOW),-m "slow or not slow")
+
+versions: $(DEV) ## run the tests on the oldest and newest versions allowed; OLDEST=python3.11 NEWEST=python3.14 name the Pythons
+	$(BIN)/python -m benchmarks.versions $(OLDEST:%=--oldest %) $(NEWEST:%=--newest %)
 
 # Each alone: where one cannot be installed, the others are tried, and its tests say that they are skipped.
 libraries: $(DEV) ## try the environments with TorchRL, RLlib and Minari, those that can be installed
@@ -64,11 +67,11 @@ docs: $(DEV) ## run the snippets in the documentation
 	$(BIN)/python -m pytest -m "slow or not slow" tests/test_docs.py tests/test_docs_numbers.py
 
 clean-cache: ## forget compiled kernels: numba does not see edits in other files
-	find . -path ./$(VENV) -prune -o \( -name '*.nbi' -o -name '*.nbc' \) -exec rm -f {} +
-	rm -rf "$${XDG_CACHE_HOME:-$$HOME/.cache}/flexarm"
+	find . -path './$(VENV)*' -prune -o \( -name '*.nbi' -o -name '*.nbc' \) -exec rm -f {} +
+	rm -rf "$${XDG_CACHE_HOME:-$$HOME/.cache}/flexarm" build/versions
 
 clean: clean-cache ## remove .venv, caches and builds; results/ stays
-	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(VENV)-oldest $(VENV)-newest build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -prune -exec rm -rf {} +
 
 $(VENV)/.stamp-venv:

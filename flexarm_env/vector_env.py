@@ -281,7 +281,8 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
 
     def close_extras(self, **kwargs: Any) -> None:
         """Dismiss the threads."""
-        self.batch.close()
+        if "batch" in vars(self):  # Gymnasium before 1.3 closes also what was refused as it was made
+            self.batch.close()
         self.view = None
 
 

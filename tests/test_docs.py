@@ -24,6 +24,8 @@ LINK = re.compile(r"!?\[[^\]]*\]\(([^)#]*)(?:#([^)]*))?\)")
 #: A path from the root of the project, and one within identify, as the page on `diagnose` and its figure write it.
 PATH = re.compile(r"(?<![\w/.-])(?:flexarm_env|tests|docs|benchmarks|agents|configs)/[\w./-]*\w")
 WITHIN_IDENTIFY = re.compile(r"(?<![\w/.-])(?:replay|inspect|calibrate|select|explain)/\w+\.py|(?<=[`>])\w+\.py(?=[`,])")
+#: What in a block needs the extra train.
+TRAINS = re.compile(r"stable_baselines3|agents\.(?:dataset|learning|train)\b")
 TIME_LIMIT = 900
 SERVES = "flexarm lab"
 
@@ -142,23 +144,26 @@ PREPARE = {
 }
 
 
-def prepare(document: Path, folder: Path) -> None:
+def prepare(document: Path, folder: Path, blocks: list[Block]) -> None:
+    if any(TRAINS.search(block.text) for block in blocks):
+        pytest.importorskip("stable_baselines3")
     PREPARE.get(name_of(document), lambda folder: None)(folder)
 
 
 @every_document
 def test_commands_and_snippets_run(document, place):
-    prepare(document, place)
-    for block in blocks_of(document):
-        if not block.slow:
-            run_block(document, block, place)
+    blocks = [block for block in blocks_of(document) if not block.slow]
+    prepare(document, place, blocks)
+    for block in blocks:
+        run_block(document, block, place)
 
 
 @pytest.mark.slow(minutes=3)
 @pytest.mark.parametrize("document", [d for d in DOCUMENTS if has_slow(d)], ids=name_of)
 def test_slow_commands_and_snippets_run(document, place):
-    prepare(document, place)
-    for block in blocks_of(document):
+    blocks = blocks_of(document)
+    prepare(document, place, blocks)
+    for block in blocks:
         run_block(document, block, place)
 
 

@@ -167,6 +167,13 @@ def rigs_tables(numbers: str) -> str:
     return document(json.loads(numbers)["rigs"], "../results/rigs/")
 
 
+def versions_table(numbers: str) -> str:
+    """Write the table of the runs on the oldest and newest versions."""
+    from benchmarks.versions.table import markdown
+
+    return markdown(json.loads(numbers))
+
+
 def lines_with(first: str) -> Callable[[str], str]:
     """Make a function that takes the table with this beginning from a report in Markdown."""
 
@@ -206,6 +213,7 @@ TABLES = (
     Table("rigs", PROJECT / "docs" / "rigs.md", RESULTS / "rigs" / "rigs.json", rigs_tables),
     Table("recipes", PROJECT / "docs" / "learning.md", RESULTS / "recipe" / "recipe.md", lines_with("| observation")),
     Table("references", PROJECT / "docs" / "learning.md", RESULTS / "recipe" / "recipe.md", lines_with("| agent")),
+    Table("versions", PROJECT / "CONTRIBUTING.md", RESULTS / "versions" / "versions.json", versions_table),
     Table("times", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.json", times_words),
 )
 

@@ -12,11 +12,15 @@ import flexarm_env
 
 ROOT = Path(flexarm_env.__file__).parent
 FILES = [file for file in sorted(ROOT.rglob("*.py")) if ">>> " in file.read_text(encoding="utf-8")]
+#: Files whose import needs a library of an extra.
+NEED = {"sb3.py": "stable_baselines3"}
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.relative_to(ROOT).as_posix())
 def test_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, file: Path) -> None:
+    if file.name in NEED:
+        pytest.importorskip(NEED[file.name])
     monkeypatch.chdir(tmp_path)  # examples write files
     name = ".".join(file.relative_to(ROOT.parent).with_suffix("").parts).removesuffix(".__init__")
     result = doctest.testmod(importlib.import_module(name), optionflags=FLAGS)

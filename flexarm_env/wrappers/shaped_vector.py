@@ -21,7 +21,7 @@ from flexarm_env.wrappers.shaping import Shaping, refuse_other, refuse_state
 Array = NDArray[Any]
 
 
-class ShapedVector(VectorWrapper[Array, Array, Array, Array, Array]):
+class ShapedVector(VectorWrapper):  # its type parameters came with gymnasium 1.4
     """Many arms with the observation, the action and the reward of the shipped policies; see Shaped.
 
     Episodes start and end together, since filters and controllers are reset for all arms at once. Where one arm leaves the

@@ -17,6 +17,8 @@ from benchmarks.hidden_effects.run import run
 from flexarm_env import Arm, Recording, diagnose, simulate
 
 distributed = pytest.importorskip("distributed", reason="needs the extra cluster: pip install flexarm-env[cluster]")
+#: joblib before 1.6 warns of its own backend for Dask.
+pytestmark = pytest.mark.filterwarnings("ignore:`apply_async` is deprecated:DeprecationWarning")
 
 
 @pytest.fixture(scope="module")

@@ -13,6 +13,7 @@ from env_steps import actions, same
 from gymnasium.utils.env_match import check_environments_match
 from gymnasium.vector import AutoresetMode
 from gymnasium.wrappers import vector as of_many
+from packaging.version import Version
 
 from flexarm_env import Arm
 from flexarm_env.registration import IDS
@@ -51,6 +52,8 @@ def test_the_passive_checker_of_gymnasium_is_silent(id: str, render_mode: str | 
 @pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP])
 def test_wrappers_of_gymnasium_take_many_arms(id: str, mode: AutoresetMode) -> None:
     """Gymnasium has no checker of vector environments; its wrappers rely on spaces, infos and metadata."""
+    if mode is AutoresetMode.SAME_STEP and Version(gym.__version__) < Version("1.4"):
+        pytest.skip("Gymnasium before 1.4 counts a step too few of episodes that start in the step that ends the last one")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         bare = gym.make_vec(id, 3, duration=0.1, autoreset_mode=mode, **NATIVE)
