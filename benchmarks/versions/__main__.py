@@ -52,7 +52,7 @@ def measure(environment: Environment, folders: Sequence[str], left_out: Sequence
         "python": environment.python_version(),
         "requirements": environment.versions(),
         "left_out": list(left_out) if environment.side == "newest" else [],
-        "folders": {name: {"commit": at, **asdict(each)} for name, each in counts.items()},
+        "folders": {name: {"commit": at, "other_versions": {}, **asdict(each)} for name, each in counts.items()},
     }
 
 

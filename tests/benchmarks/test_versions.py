@@ -104,7 +104,7 @@ def test_folders_without_tests_are_left_out():
 
 def run(python: str, *failed: str, folders: tuple[str, ...] = (), left_out: tuple[str, ...] = ()) -> dict:
     versions = dict.fromkeys([*table.SHOWN, "rich"], "1.2")
-    counts = {"commit": "abc", "passed": 7, "failed": failed, "skipped": {"a": 2, "b": 3}}
+    counts = {"commit": "abc", "other_versions": {}, "passed": 7, "failed": failed, "skipped": {"a": 2, "b": 3}}
     return {
         "python": python,
         "requirements": versions,
@@ -125,7 +125,7 @@ def test_the_table_has_both_runs_and_what_was_left_out():
 def test_the_table_says_what_was_not_run():
     most = tuple(name for name in folders_of_tests() if name not in ("cli", "plant"))
     text = table.markdown({"oldest": run("3.11.0", folders=most)})
-    assert "With the oldest versions no tests of cli, plant were run." in text
+    assert "With the oldest versions no tests of `cli`, `plant` were run." in text
     assert "left out" not in text
 
 
@@ -143,9 +143,25 @@ def test_a_run_of_one_side_keeps_the_other():
 
 
 @pytest.mark.usefixtures("record")
-def test_a_run_of_some_folders_keeps_the_others_of_the_same_versions():
+def test_a_run_of_some_folders_keeps_the_others_of_the_same_python():
     table.keep({"oldest": run("3.11.0", "one", folders=("cli", "plant"))})
     runs = table.keep({"oldest": run("3.11.0", folders=("plant",))})
     assert {name: len(each["failed"]) for name, each in runs["oldest"]["folders"].items()} == {"cli": 1, "plant": 0}
     runs = table.keep({"oldest": run("3.11.1", folders=("plant",))})
     assert list(runs["oldest"]["folders"]) == ["plant"]
+
+
+@pytest.mark.usefixtures("record")
+def test_a_folder_that_was_run_with_other_versions_says_so():
+    table.keep({"oldest": run("3.11.0", folders=("cli", "plant"))})
+    changed = run("3.11.0", folders=("plant",))
+    changed["requirements"]["rich"] = "1.3"
+    runs = table.keep({"oldest": changed})
+    assert {name: each["other_versions"] for name, each in runs["oldest"]["folders"].items()} == {
+        "cli": {"rich": "1.2"},
+        "plant": {},
+    }
+    assert "With the oldest versions the tests of `cli` were run with rich 1.2." in table.markdown(runs)
+    runs = table.keep({"oldest": run("3.11.0", folders=("env",))})
+    assert runs["oldest"]["folders"]["cli"]["other_versions"] == {}
+    assert runs["oldest"]["folders"]["plant"]["other_versions"] == {"rich": "1.3"}
