@@ -156,11 +156,11 @@ class ThresholdCriteria:
         return best > self.settings.errors.far_off or excess(best) > share * without.score.excess
 
     def stays_inadequate(self, found: Model, without: Model) -> bool:
-        """Whether one more effect leaves the model far off without halving its error both in windows and in the free run.
+        """Whether one more effect leaves the model far off without removing most of its excess, in windows and in the free run.
 
         Something else is missing then, which a flexible enough effect imitates where it was fitted.
         """
-        share = 1.0 - self.settings.selecting.least_gain_far_off
+        share = 1.0 - self.settings.selecting.least_total_gain
         new, old = found.score, without.score
         pairs = ((new.excess, old.excess), (new.free_run_excess, old.free_run_excess))
         return new.windows > self.settings.errors.far_off and any(left > share * before for left, before in pairs)
