@@ -37,7 +37,7 @@ def main() -> int:
         print(error, file=sys.stderr)
         return 2
     print(markdown(runs), end="")
-    return 1 if any(totals(run)[1] for run in runs.values()) else 0
+    return 1 if any(totals(runs[side])[1] for side in sides) else 0
 
 
 def measure(environment: Environment, folders: Sequence[str], left_out: Sequence[str]) -> dict[str, Any]:
