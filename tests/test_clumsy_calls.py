@@ -40,7 +40,7 @@ def test_what_is_no_list_of_recordings_is_refused(function, arm, run):
         assert "\n" not in str(error.value)
 
 
-@pytest.mark.parametrize("function", set(WITH_RECORDINGS) - {"add"})
+@pytest.mark.parametrize("function", sorted(set(WITH_RECORDINGS) - {"add"}))
 def test_the_name_of_an_arm_is_no_arm(function, run):
     with pytest.raises(InputError, match="the arm is 'thesis', of type str; give an Arm"):
         WITH_RECORDINGS[function]("thesis", [run])
