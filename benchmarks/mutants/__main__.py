@@ -7,32 +7,31 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import sys
 import time
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
-    os.environ.setdefault(variable, "1")
+from joblib import Parallel, delayed
 
-from joblib import Parallel, delayed  # noqa: E402
-
-import flexarm_env  # noqa: E402
-from benchmarks.mutants.judge import judged  # noqa: E402
-from benchmarks.mutants.measure import measured  # noqa: E402
-from benchmarks.mutants.mutant import PARTS, Mutant, sample  # noqa: E402
-from benchmarks.mutants.reach import PROJECT, Reach  # noqa: E402
-from flexarm_env.files import write_whole  # noqa: E402
-from flexarm_env.terminal.provenance import commit  # noqa: E402
+import flexarm_env
+from benchmarks.mutants.judge import judged
+from benchmarks.mutants.measure import measured
+from benchmarks.mutants.mutant import PARTS, Mutant, sample
+from benchmarks.mutants.reach import PROJECT, Reach
+from flexarm_env.files import write_whole
+from flexarm_env.terminal.program import Program
+from flexarm_env.terminal.provenance import commit
 
 RESULTS = PROJECT / "results" / "mutants"
 #: Seconds of tests, as they take on the sound program, to which a mutant is put.
 BUDGET = 60.0
 
 
-def main() -> None:
+@Program(stopped="stopped; the same command goes on")
+def main(arguments: Sequence[str]) -> None:
     """Judge a sample of mutants, and write their outcomes and the share that was found."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.mutants", description=__doc__)
     parser.add_argument("--seed", type=int, default=1, help="of the sample")
@@ -40,7 +39,7 @@ def main() -> None:
     parser.add_argument("--part", choices=PARTS, help="mutants of this part only; no table is written")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--out", type=Path, default=RESULTS, help="folder of outcomes and tables, by seed")
-    asked = parser.parse_args()
+    asked = parser.parse_args(arguments)
     folder = asked.out / f"seed-{asked.seed}"
     reach = measured(asked.out / "reach.json")
     parts = PARTS if asked.part is None else (asked.part,)
@@ -87,4 +86,4 @@ def write(path: Path, outcomes: list[dict[str, Any]], seed: int, count: int) -> 
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

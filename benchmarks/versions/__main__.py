@@ -13,29 +13,26 @@ from benchmarks.versions.interpreters import FIND
 from benchmarks.versions.requirements import direct_requirements
 from benchmarks.versions.suite import folders_of_tests, run_tests
 from benchmarks.versions.table import SIDES, keep, markdown, totals
-from flexarm_env.errors import InputError
+from flexarm_env.terminal.program import Program
 from flexarm_env.terminal.provenance import commit
 
 
-def main() -> int:
+@Program()
+def main(arguments: Sequence[str]) -> int:
     """Run one or both sides, and print the table of both."""
-    given = _parser().parse_args()
+    given = _parser().parse_args(arguments)
     sides = [given.only] if given.only else SIDES
-    try:
-        environments = {
-            side: Environment(side, tuple(direct_requirements(given.without if side == "newest" else ()))) for side in sides
-        }
-        if not given.folders:
-            pythons = {side: getattr(given, side) or FIND[side]() for side in sides}
-            for side, environment in environments.items():
-                print(f"Making {environment.folder.name} with {pythons[side]}", flush=True)
-                environment.make(pythons[side])
-        folders = given.folders or folders_of_tests()
-        measured = {side: measure(environment, folders, given.without) for side, environment in environments.items()}
-        runs = keep(measured)  # not before all are done: a test holds the record against its table in a document
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
+    environments = {
+        side: Environment(side, tuple(direct_requirements(given.without if side == "newest" else ()))) for side in sides
+    }
+    if not given.folders:
+        pythons = {side: getattr(given, side) or FIND[side]() for side in sides}
+        for side, environment in environments.items():
+            print(f"Making {environment.folder.name} with {pythons[side]}", flush=True)
+            environment.make(pythons[side])
+    folders = given.folders or folders_of_tests()
+    measured = {side: measure(environment, folders, given.without) for side, environment in environments.items()}
+    runs = keep(measured)  # not before all are done: a test holds the record against its table in a document
     print(markdown(runs), end="")
     return 1 if any(totals(runs[side])[1] for side in sides) else 0
 
