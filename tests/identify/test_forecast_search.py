@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from flexarm_env import Arm, Recording, diagnose, simulate
+from flexarm_env import Arm, Recording, compare, diagnose, simulate
 from flexarm_env.identify.results import Diagnosis
 
 #: A flexible arm without dry friction, whose tip is seen by a camera.
@@ -59,11 +59,14 @@ def search(arm: Arm, recording: Recording, jobs: int = 1) -> Diagnosis:
 )
 def test_two_missing_torques_are_named_where_one_other_effect_fits_better_than_either(camera, seed):
     """A cable's spring alone imitates both, at two to three times the noise; Coulomb friction alone leaves seventy times."""
-    found = search(camera, simulate(machine_with(camera, PAIR), "square", duration=5.0, rate=500.0, seed=seed))
+    recording = simulate(machine_with(camera, PAIR), "square", duration=5.0, rate=500.0, seed=seed)
+    found = search(camera, recording)
     assert found.verdict == "effects"
     assert set(found.effects) in ({"coulomb", "constant_torque"}, {"coulomb", "asymmetric_coulomb"})
     assert found.arm.value("effects.coulomb.torque") == pytest.approx(0.03, rel=0.05)
-    assert found.error["final"] < 1.1 < 50.0 < found.error["refitted"]
+    # Three seconds leave constants uncertain by 0.2 of the noise on what is held out; the arm is calibrated on all of it.
+    assert found.error["final"] < 1.2 < 50.0 < found.error["refitted"]
+    assert next(row.error for row in compare(found.arm, [recording]).rows if row.recording == "all") < 1.02
 
 
 def test_a_diagnosis_is_the_same_to_the_last_bit_in_threads():
