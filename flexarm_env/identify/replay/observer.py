@@ -75,8 +75,7 @@ def innovation_sigma(plant: Plant, dataset: Dataset, torque_noise: float) -> Flo
 def innovation_noise(plant: Plant, dataset: Dataset, gains: Floats) -> Floats:
     """Compute the standard deviation (signals,) of a moving arm's innovations under the noise of its readings alone.
 
-    An observer that trusts its readings more than they deserve passes their noise on: white noise to the sqrt(6)-fold at most
-    for an arm that follows two readings in line.
+    An observer that trusts its readings more than they deserve passes their noise on, and predicts the worse.
 
     Args:
         plant: a compiled arm.
