@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import xml.etree.ElementTree as ElementTree
+from collections.abc import Sequence
 from pathlib import Path
 
 from coverage import CoverageData
@@ -15,18 +16,20 @@ from benchmarks.mutants.reach import PACKAGE, PROJECT, Reach
 from flexarm_env.files import write_whole
 
 TESTS = (
-    *(f"tests/{folder}" for folder in ("plant", "effects", "recordings", "sensors", "reference", "identify")),
+    *(f"tests/{folder}" for folder in ("effects", "recordings", "sensors", "reference", "identify")),
     *(f"tests/test_{name}.py" for name in ("arm", "arm_file", "arm_file_one_joint", "units", "rig", "reference")),
 )
+#: Tests that are slow by what they compile alone: all of them are put to mutants.
+COMPILING = ("tests/plant",)
 
 
 def measured(path: Path) -> Reach:
-    """Load what was measured, or measure it: the fast tests of `TESTS`, under coverage."""
+    """Load what was measured, or measure it: the fast tests of `TESTS` and all of `COMPILING`, under coverage."""
     if not path.exists():
         with tempfile.TemporaryDirectory() as folder:
             _measure(Path(folder))
             path.parent.mkdir(parents=True, exist_ok=True)
-            write_whole(path, json.dumps(collected(Path(folder) / "data", Path(folder) / "junit.xml")))
+            write_whole(path, json.dumps(collected(Path(folder) / "data", sorted(Path(folder).glob("*.xml")))))
     kept = json.loads(path.read_text(encoding="utf-8"))
     names = kept["tests"]
     lines = {
@@ -39,17 +42,23 @@ def measured(path: Path) -> Reach:
 def _measure(folder: Path) -> None:
     settings = folder / "settings"
     settings.write_text(f"[run]\nsource = {PACKAGE}\ndata_file = {folder / 'data'}\n")
-    covered = (f"--cov={PACKAGE}", f"--cov-config={settings}", "--cov-context=test", "--cov-report=")
-    noted = (f"--junitxml={folder / 'junit.xml'}", "-o", "junit_family=xunit1")
-    command = [sys.executable, "-m", "pytest", "-q", "-n", "0", *covered, *noted, *TESTS]
+    covered = (f"--cov={PACKAGE}", f"--cov-config={settings}", "--cov-context=test", "--cov-report=", "--cov-append")
+    _run("-m", "slow or not slow", *COMPILING)  # what compiling takes is not counted
+    _run("-m", "slow or not slow", *covered, f"--junitxml={folder / 'compiling.xml'}", *COMPILING)
+    _run(*covered, f"--junitxml={folder / 'others.xml'}", *TESTS)
+
+
+def _run(*arguments: str) -> None:
+    command = [sys.executable, "-m", "pytest", "-q", "-n", "0", "-o", "junit_family=xunit1", *arguments]
     if subprocess.run(command, cwd=PROJECT, check=False, stdout=sys.stderr).returncode:
         sys.exit("the tests must pass before faults are put in; mend what fails")
 
 
-def collected(data_file: Path, junit: Path) -> dict[str, object]:
+def collected(data_file: Path, junits: Sequence[Path]) -> dict[str, object]:
     """Collect tests, their seconds, and by file and line the numbers of those that execute it."""
     seconds = {
         f"{case.get('file')}::{case.get('name')}": float(case.get("time", "0"))
+        for junit in junits
         for case in ElementTree.parse(junit).iter("testcase")
         if not len(case)  # neither skipped nor failed
     }

@@ -21,14 +21,15 @@ class Reach:
     def tests(self, name: str, line: int, budget: float) -> list[str]:
         """Choose tests for a line of a file, until they take a budget of seconds.
 
-        A line that no test executes in Python is compiled. There the tests of its part serve, those that name its file first.
+        A line that no test executes in Python is compiled. There the tests of its part serve, those that name its file or a
+        folder of it first.
         """
         reaching: Sequence[str] = self.lines.get(name, {}).get(_statement(PROJECT / name, line), [])
         if not reaching:
             part = name.split("/")[1]
             reaching = [test for test in self.seconds if test.startswith(f"tests/{part}/")]
-        stem, chosen, taken = Path(name).stem, [], 0.0
-        for test in sorted(reaching, key=lambda test: (stem not in test, self.seconds[test], test)):
+        own, chosen, taken = Path(name).with_suffix("").parts[2:], [], 0.0
+        for test in sorted(reaching, key=lambda test: (not any(word in test for word in own), self.seconds[test], test)):
             if chosen and taken + self.seconds[test] > budget:
                 continue
             chosen.append(test)

@@ -59,3 +59,9 @@ def test_a_line_that_is_compiled_is_put_to_the_tests_of_its_part_those_of_its_fi
     }
     reach = Reach(seconds, {})
     assert reach.tests(FILE, line_of("gear_gap"), budget=60.0) == list(seconds)[:2]
+
+
+def test_tests_that_name_the_folder_of_a_compiled_line_come_first():
+    seconds = {"tests/plant/test_plant.py::quick": 0.1, "tests/plant/test_tangents.py::thorough": 9.0}
+    file = "flexarm_env/plant/tangents/events.py"
+    assert Reach(seconds, {}).tests(file, 60, budget=60.0) == list(seconds)[::-1]
