@@ -6,8 +6,24 @@ import difflib
 from collections.abc import Iterable
 
 
+def printable(text: str) -> str:
+    r"""Escape the characters that would break a line of text or vanish in it.
+
+    Examples:
+        >>> printable("gain\x7f\n")
+        'gain\\x7f\\n'
+    """
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
+
+
 class InputError(ValueError):
-    """Bad input from a user, in one line: the input, the allowed values, and the remedy."""
+    """Bad input from a user, in one line: the input, the allowed values, and the remedy.
+
+    Whatever the text quotes from a file or a command line is escaped.
+    """
+
+    def __init__(self, text: object = "") -> None:
+        super().__init__(printable(str(text)))
 
 
 class UnknownArgument(InputError, TypeError):

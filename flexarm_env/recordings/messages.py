@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from flexarm_env.errors import InputError
+from flexarm_env.errors import InputError, printable
 from flexarm_env.recordings.clock import RestartError
 
 _LONGEST = 40
@@ -19,10 +19,6 @@ def quoted(text: str) -> str:
 def file_error(path: Path, what: object) -> InputError:
     """Make the error of a file. Characters of path or content that would break the line are escaped, long content is cut."""
     if isinstance(what, RestartError):
-        return what.of(_escaped(str(path)))
-    text = _escaped(str(what))
-    return InputError(_escaped(f"{path}: ") + (text if len(text) <= _LONGEST_MESSAGE else f"{text[: _LONGEST_MESSAGE - 3]}..."))
-
-
-def _escaped(text: str) -> str:
-    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
+        return what.of(str(path))
+    text = printable(str(what))
+    return InputError(f"{path}: " + (text if len(text) <= _LONGEST_MESSAGE else f"{text[: _LONGEST_MESSAGE - 3]}..."))

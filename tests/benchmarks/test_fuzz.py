@@ -38,8 +38,8 @@ def test_a_thousand_damaged_files_are_read_or_refused_in_one_line(tmp_path):
         assert min(counts[kind, READ], counts[kind, REFUSED]) > 10, counts
 
 
-def two_lines(path, sound):
-    raise InputError("one line\nand another")
+def too_long(path, sound):
+    raise InputError("a word " * 1000)
 
 
 def fault(path, sound):
@@ -57,7 +57,7 @@ def hang(path, sound):
 
 @pytest.mark.parametrize(
     ("reader", "words"),
-    [(two_lines, "no line for a person"), (fault, "KeyError: 't'"), (warning, "RuntimeWarning: overflow"), (hang, "hung")],
+    [(too_long, "no line for a person"), (fault, "KeyError: 't'"), (warning, "RuntimeWarning: overflow"), (hang, "hung")],
 )
 def test_a_reader_at_fault_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, reader, words):
     monkeypatch.setattr(trial, "LONGEST", 0.2)
