@@ -11,10 +11,10 @@ import numpy as np
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.progress import Progress
 from flexarm_env.identify.select.criteria import Criteria, Measure
-from flexarm_env.identify.select.fits import fit_models
 from flexarm_env.identify.select.forecast_search import ForecastSearch
 from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.propose import nearest, none_comes_near, others, starts_of_search
+from flexarm_env.identify.select.rivals import find_rivals
 from flexarm_env.identify.select.screen import Trial, control_of, screen
 from flexarm_env.identify.select.stepwise import extend_chain
 from flexarm_env.identify.select.swap import RivalComparison, compare_rivals
@@ -246,8 +246,12 @@ class Search:
         if trace.accepted and self.criteria.stays_inadequate(winner, before):
             return trace
         alike = [m for m in models if len(m.effects) == len(winner.effects)]
-        trace, rivals = self._rivals(trace, winner, alike, measure)
-        winner, names = rivals[0], tuple(m.effects[0] for m in rivals)
+        rivals = find_rivals(self.calibrator, self.criteria, before, winner, alike, measure)
+        if not rivals.is_complete:
+            trace = self._stop(trace, f"rivals of {winner.effects[0]} were calibrated again")
+        elif rivals.tried and len(winner.effects) == 1:
+            trace = trace.then("fit", tried=_gains(trace, rivals.tried, rivals.measure))
+        winner, names = rivals.models[0], tuple(m.effects[0] for m in rivals.models)
         model = self._polish(winner)
         first, *companions = winner.effects
         added = [Accepted(first, names, model.score), *(Accepted(n, (n,), model.score) for n in companions)]
@@ -269,42 +273,6 @@ class Search:
         measures: tuple[Measure, ...] = (measure, lambda s: s.excess)  # far off, one model may rest where it should move
         worthwhile = any(self.criteria.is_worthwhile(singles[0], winner, m) for m in measures)
         return winner if worthwhile else singles[0]
-
-    def _rivals(self, trace: Trace, winner: Model, models: Sequence[Model], measure: Measure) -> tuple[Trace, list[Model]]:
-        """Find the models between which the data do not decide, best first, each calibrated from nominal constants.
-
-        A calibration that began with biased constants leaves more than the difference between near rivals, and so does one that
-        ended where constants compensate each other: each is calibrated by both schedules, and ranked by what it then leaves.
-        Where no time is left for another, all near rivals are taken as undecided.
-        """
-        calibrator, dataset = self.calibrator, self.calibrator.dataset
-        left = measure(winner.score)
-        removed = measure(trace.model.score) - left
-        most = left + self.criteria.contender_difference(removed)
-        first = [m for m in models if m is winner or measure(m.score) <= most]
-        if len(first) == 1:
-            return trace, first
-        arms = [calibrator.nominal_with_effects_of(m.arm) for m in first]
-        again = fit_models(calibrator, [m.effects for m in first], arms, Progress(), thorough=True)
-        if len(again) < len(first):
-            trace = self._stop(trace, f"rivals of {winner.effects[0]} were calibrated again")
-            return trace, sorted(first, key=self.criteria.rank(winner.score, measure, dataset))
-        every = (*first, *again)
-        measure = self.criteria.measure([m.score for m in every])
-        nearest = min((m.score for m in every), key=measure)
-        removed, rank = measure(trace.model.score) - measure(nearest), self.criteria.rank(nearest, measure, dataset)
-        better = [min(pair, key=rank) for pair in zip(first, again, strict=True)]
-        if len(winner.effects) == 1:
-            trace = trace.then("fit", tried=_gains(trace, better, measure))
-        left = min(measure(m.score) for m in better)
-        most = left + self.criteria.equivalent_difference(removed, left)
-        return trace, self._simplest_first(sorted([m for m in better if measure(m.score) <= most], key=rank))
-
-    def _simplest_first(self, ranked: list[Model]) -> list[Model]:
-        """Put first the simplest of the models whose errors differ from the first one's by less than calibrations leave."""
-        first, least = ranked[0], self.calibrator.settings.errors.converged
-        simplest = min((m for m in ranked if m.error_over(first) <= least), key=lambda m: len(m.calibration.parameters))
-        return [simplest, *(m for m in ranked if m is not simplest)]
 
 
 def exchange(trace: Trace, place: int, comparison: RivalComparison) -> Trace:

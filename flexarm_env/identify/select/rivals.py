@@ -1,0 +1,73 @@
+"""Models between which the data do not decide: each is calibrated anew before one is named."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from flexarm_env.identify.calibrate.calibrator import Calibrator
+from flexarm_env.identify.progress import Progress
+from flexarm_env.identify.select.criteria import Criteria, Measure
+from flexarm_env.identify.select.fits import fit_models
+from flexarm_env.identify.select.model import Model
+
+
+@dataclass(frozen=True)
+class Rivals:
+    """Models between which the data do not decide.
+
+    Attributes:
+        models: the one to name first.
+        measure: of the error by which they were compared.
+        tried: every near model as it was calibrated at last, best or not; empty where nothing came near the winner.
+        is_complete: whether the time sufficed to calibrate each of them again.
+    """
+
+    models: tuple[Model, ...]
+    measure: Measure
+    tried: tuple[Model, ...] = ()
+    is_complete: bool = True
+
+
+def find_rivals(
+    calibrator: Calibrator, criteria: Criteria, before: Model, winner: Model, models: Sequence[Model], measure: Measure
+) -> Rivals:
+    """Find the models between which the data do not decide, each calibrated from nominal constants, too.
+
+    A calibration that began with biased constants leaves more than the difference between near rivals, and so does one that
+    ended where constants compensate each other: each is calibrated by both schedules, and ranked by what it then leaves.
+    Where no time is left for another, all near rivals are taken as undecided.
+
+    Args:
+        calibrator: of the recordings.
+        criteria: by which models are judged.
+        before: the model to which each adds an effect.
+        winner: the best of them.
+        models: of as many effects, the winner among them.
+        measure: of the error.
+    """
+    left = measure(winner.score)
+    most = left + criteria.contender_difference(measure(before.score) - left)
+    first = [m for m in models if m is winner or measure(m.score) <= most]
+    if len(first) == 1:
+        return Rivals((winner,), measure)
+    arms = [calibrator.nominal_with_effects_of(m.arm) for m in first]
+    again = fit_models(calibrator, [m.effects for m in first], arms, Progress(), thorough=True)
+    if len(again) < len(first):
+        ranked = sorted(first, key=criteria.rank(winner.score, measure, calibrator.dataset))
+        return Rivals(tuple(ranked), measure, is_complete=False)
+    every = (*first, *again)
+    measure = criteria.measure([m.score for m in every])
+    least = min((m.score for m in every), key=measure)
+    removed, rank = measure(before.score) - measure(least), criteria.rank(least, measure, calibrator.dataset)
+    better = [min(pair, key=rank) for pair in zip(first, again, strict=True)]
+    left = min(measure(m.score) for m in better)
+    most = left + criteria.equivalent_difference(removed, left)
+    ranked = sorted([m for m in better if measure(m.score) <= most], key=rank)
+    simplest = _simplest(ranked, calibrator.settings.errors.converged)
+    return Rivals((simplest, *(m for m in ranked if m is not simplest)), measure, tuple(better))
+
+
+def _simplest(ranked: Sequence[Model], converged: float) -> Model:
+    """Choose the simplest of the models whose errors differ from the first one's by less than calibrations leave."""
+    return min((m for m in ranked if m.error_over(ranked[0]) <= converged), key=lambda m: len(m.calibration.parameters))
