@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
-from agents.evaluate import RATE
 from flexarm_env import Arm
-from flexarm_env.controllers import make_controller
 from flexarm_env.controllers.tuned import shipped_controllers
 from flexarm_env.tuning.search import Budget, tune
 
@@ -33,15 +30,15 @@ def retune(law: str, arm: Arm, place: Path) -> None:
         left.unlink(missing_ok=True)
 
 
-def controllers_of(folder: Path, case: str) -> dict[str, list[Any]]:
-    """Make the controllers of the nominal arm and of a case's corrected one: as they are, and tuned where that is stored."""
-    arms = {"nominal": (NOMINAL, "nominal"), "corrected": (folder / "arms" / f"{case}.toml", case)}
-    agents: dict[str, list[Any]] = {}
+def controllers_of(folder: Path, case: str) -> dict[str, tuple[str | Path, Arm]]:
+    """List laws, and their tuned controllers where stored, each with its arm: the nominal one and a case's corrected one."""
+    arms = {"nominal": (Arm.load(NOMINAL), "nominal"), "corrected": (Arm.load(folder / "arms" / f"{case}.toml"), case)}
+    found: dict[str, tuple[str | Path, Arm]] = {}
     for law in dict.fromkeys((*CLASSICAL, *RETUNED)):
         for kind, (arm, name) in arms.items():
             place = tuned_place(folder, law, name)
             if law in CLASSICAL:
-                agents[f"{law}, {kind}"] = [make_controller(law, Arm.load(arm), 1.0 / RATE)]
+                found[f"{law}, {kind}"] = law, arm
             if place.is_file():
-                agents[f"{law} tuned, {kind}"] = [make_controller(str(place), Arm.load(arm), 1.0 / RATE)]
-    return agents
+                found[f"{law} tuned, {kind}"] = place, arm
+    return found

@@ -72,7 +72,9 @@ def test_each_law_is_made_and_tuned_for_both_arms(tmp_path) -> None:
     found = controllers_of(tmp_path, "bias")
     assert {"pd, nominal", "pd, corrected", "lqg, corrected", "pd tuned, nominal", "pd tuned, corrected"} <= set(found)
     assert "lqg tuned, corrected" not in found  # not made
-    (nominal,), (corrected,) = found["pd tuned, nominal"], found["pd tuned, corrected"]
+    nominal, corrected = (
+        make_controller(str(law), arm, 0.005) for law, arm in (found["pd tuned, nominal"], found["pd tuned, corrected"])
+    )
     assert (nominal.proportional, corrected.proportional) == (2.0, 6.0)
     assert nominal.loads.torque == 0.0 != corrected.loads.torque
 
