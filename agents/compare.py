@@ -1,26 +1,26 @@
-"""Compare stored policies with every controller: python -m agents.compare writes results/policies/."""
+"""Compare stored policies with every controller: python -m agents.compare writes results/policies/; stopped, it goes on."""
 
 from __future__ import annotations
 
 import argparse
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from agents.cells import Name, Values, compute_cells
 from agents.compare_report import report_of
 from agents.curves import draw_curves
-from agents.evaluate import RATE, evaluate_controller
+from agents.evaluate import EVERY_SET, RATE, evaluate_controller
 from agents.goals import THESIS, cell_of, verdicts
 from agents.learning.artefact import Artefact
-from agents.results import origin_of, write_results
+from agents.results import cells_place, origin_of, write_results
 from agents.train import FOLDER
 from flexarm_env import Arm, InputError
 from flexarm_env.controllers import CONTROLLERS
-from flexarm_env.identify.workers import Workers
 from flexarm_env.tasks import TASKS
 from flexarm_env.terminal.outputs import make_folder
 from flexarm_env.terminal.program import Program
@@ -43,43 +43,34 @@ def find_policies(folder: Path) -> dict[str, list[Path]]:
     return found
 
 
-def evaluate_policies(paths: Sequence[Path], task: str, arms: str, arm: str, count: int) -> dict[str, np.ndarray]:
-    """Evaluate the runs of one configuration: each measure (runs, arms)."""
-    nominal = Arm.load(arm)
-    agents = [Artefact.load(path).agent() for path in paths]
-    runs = [measure(roll_out(agent, TASKS[task], nominal, SETS[arms], count, RATE), TASKS[task]) for agent in agents]
+def evaluate_any(
+    who: str | Sequence[Path], task: str, arms: str, nominal: Arm, count: int, first_seed: int = FIRST_SEED
+) -> dict[str, np.ndarray]:
+    """Evaluate a controller, as one run, or a configuration's runs: each measure (runs, arms)."""
+    if isinstance(who, str):
+        found = evaluate_controller(who, task, arms, nominal, count, first_seed)
+        return {name: values[None] for name, values in found.items()}
+    drawn = EVERY_SET[arms]
+    agents = [Artefact.load(path).agent(1.0 / (RATE * drawn.rate_share)) for path in who]
+    runs = [measure(roll_out(agent, TASKS[task], nominal, drawn, count, RATE, first_seed), TASKS[task]) for agent in agents]
     return {name: np.array([run[name] for run in runs]) for name in MEASURES}
 
 
-def evaluate_any(task: str, arms: str, who: str | Sequence[Path], arm: str, count: int) -> dict[str, np.ndarray]:
-    """Evaluate a controller, as one run, or a configuration's runs: each measure (runs, arms)."""
-    if isinstance(who, str):
-        return {name: values[None] for name, values in evaluate_controller(who, task, arms, arm, count).items()}
-    return evaluate_policies(who, task, arms, arm, count)
-
-
-def compare(policies: dict[str, list[Path]], arm: str, count: int, jobs: int) -> dict[str, Any]:
+def compare(policies: dict[str, list[Path]], arm: Arm, count: int, folder: Path, jobs: int) -> dict[str, Any]:
     """Evaluate all on each task and set; compare each policy with the best controller of both kinds."""
     tasks = {name: Artefact.load(paths[0]).plan.task for name, paths in policies.items()}
-    work: dict[tuple[str, str, str], Any] = {}
-    for task in TASKS:
-        agents = dict.fromkeys(CONTROLLERS) | {name: None for name in policies if tasks[name] == task}
-        work |= {(task, arms, name): policies.get(name, name) for arms in SETS for name in agents}
-    began, values = time.perf_counter(), {}
-    running = Workers(jobs).spread([(evaluate_any, (task, arms, who, arm, count)) for (task, arms, _), who in work.items()])
-    for key, found in zip(work, running, strict=True):
-        values[key] = found
-        done = f"{len(values)} of {len(work)}: {' · '.join(key)}"
-        print(f"\r{time.perf_counter() - began:4.0f} s  {done:<60}", end="", file=sys.stderr, flush=True)
-    print(file=sys.stderr)
+    agents = {task: [*CONTROLLERS, *(name for name in policies if tasks[name] == task)] for task in TASKS}
+    cells = [(task, arms, name) for task in TASKS for arms in SETS for name in agents[task]]
+    work = {(*cell, name): (evaluate_any, (policies.get(name, name), *cell, arm, count)) for *cell, name in cells}
+    values = compute_cells(work, folder, jobs)
     return {task: {arms: _judged(_of(values, task, arms), policies) for arms in SETS} for task in TASKS}
 
 
-def _of(values: dict[tuple[str, str, str], Any], task: str, arms: str) -> dict[str, Any]:
+def _of(values: Mapping[Name, Values], task: str, arms: str) -> dict[str, Values]:
     return {name: found for (own_task, own_arms, name), found in values.items() if (own_task, own_arms) == (task, arms)}
 
 
-def _judged(values: dict[str, Any], policies: dict[str, list[Path]]) -> dict[str, Any]:
+def _judged(values: dict[str, Values], policies: dict[str, list[Path]]) -> dict[str, Any]:
     cells = {name: cell_of(found) for name, found in values.items()}
     rivals = {"thesis": THESIS, "classical": tuple(CONTROLLERS)}
     learned = [name for name in values if name in policies]
@@ -101,7 +92,7 @@ def about(policies: dict[str, list[Path]]) -> dict[str, Any]:
     return found
 
 
-@Program()
+@Program(stopped="stopped; the same command goes on")
 def main(arguments: Sequence[str]) -> int:
     """Compare, write JSON, Markdown and the learning curves, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.compare", description=__doc__)
@@ -115,9 +106,8 @@ def main(arguments: Sequence[str]) -> int:
         raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
     make_folder(asked.save, "policies.json", "policies.md", "curves.png")
     policies = find_policies(asked.policies)
-    Arm.load(asked.arm)
-    began = time.perf_counter()
-    found = compare(policies, asked.arm, asked.count, asked.jobs)
+    arm, began = Arm.load(asked.arm), time.perf_counter()
+    found = compare(policies, arm, asked.count, cells_place(asked.save, "policies"), asked.jobs)
     result = {
         **origin_of(f"python -m agents.compare --arm {asked.arm} --count {asked.count}", FIRST_SEED),
         "seconds": round(time.perf_counter() - began, 1),
@@ -127,8 +117,8 @@ def main(arguments: Sequence[str]) -> int:
         "policies": about(policies),
         "tasks": found,
     }
-    place = write_results(asked.save, "policies", result, report_of(result))
     draw_curves({name: [Artefact.load(path) for path in paths] for name, paths in policies.items()}, asked.save / "curves.png")
+    place = write_results(asked.save, "policies", result, report_of(result))
     print(f"{place}: {len(policies)} configurations, {len(CONTROLLERS)} controllers, {result['seconds']} s")
     return 0
 

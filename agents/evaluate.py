@@ -1,4 +1,4 @@
-"""Evaluate controllers on fixed sets of arms: python -m agents.evaluate writes results/baselines/."""
+"""Evaluate controllers on fixed sets of arms: python -m agents.evaluate writes results/baselines/; stopped, it goes on."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from agents.cells import Name, Values, compute_cells
 from agents.report import table_of
-from agents.results import origin_of, write_results
+from agents.results import cells_place, origin_of, write_results
 from agents.statistics import mean_interval, paired_difference
 from flexarm_env import Arm, InputError
 from flexarm_env.controllers import CONTROLLERS, make_controller
 from flexarm_env.errors import did_you_mean
-from flexarm_env.identify.workers import Workers
 from flexarm_env.tasks import TASKS
 from flexarm_env.terminal.outputs import make_folder
 from flexarm_env.terminal.program import Program
@@ -33,29 +33,23 @@ RATE = 200.0
 
 
 def evaluate_controller(
-    name: str, task: str, arms: str, arm: str, count: int, first_seed: int = FIRST_SEED
+    name: str, task: str, arms: str, nominal: Arm, count: int, first_seed: int = FIRST_SEED
 ) -> dict[str, np.ndarray]:
     """Evaluate a controller designed on the nominal arm: each measure (arms,)."""
-    nominal, drawn = Arm.load(arm), EVERY_SET[arms]
+    drawn = EVERY_SET[arms]
     controller = make_controller(name, nominal, 1.0 / (RATE * drawn.rate_share))
     return measure(roll_out(controller, TASKS[task], nominal, drawn, count, RATE, first_seed), TASKS[task])
 
 
-def evaluate(names: Sequence[str], arm: str, count: int, jobs: int, first_seed: int = FIRST_SEED) -> dict[str, Any]:
+def evaluate(names: Sequence[str], arm: Arm, count: int, first_seed: int, folder: Path, jobs: int) -> dict[str, Any]:
     """Evaluate controllers on all tasks and sets: each measure's mean and interval, and its difference from PD's."""
     cells = [(task, arms, name) for task in TASKS for arms in SETS for name in names]
-    tasks = [(evaluate_controller, (name, task, arms, arm, count, first_seed)) for task, arms, name in cells]
-    found: dict[tuple[str, str, str], dict[str, np.ndarray]] = {}
-    began = time.perf_counter()
-    for cell, values in zip(cells, Workers(jobs).spread(tasks), strict=True):
-        found[cell] = values
-        done = f"{len(found)} of {len(cells)}: {' · '.join(cell)}"
-        print(f"\r{time.perf_counter() - began:4.0f} s  {done:<60}", end="", file=sys.stderr, flush=True)
-    print(file=sys.stderr)
+    work = {(*cell, name): (evaluate_controller, (name, *cell, arm, count, first_seed)) for *cell, name in cells}
+    found = compute_cells(work, folder, jobs)
     return {task: {arms: {name: _cell(found, task, arms, name) for name in names} for arms in SETS} for task in TASKS}
 
 
-def _cell(found: Mapping[tuple[str, str, str], Mapping[str, np.ndarray]], task: str, arms: str, name: str) -> dict[str, Any]:
+def _cell(found: Mapping[Name, Values], task: str, arms: str, name: str) -> dict[str, Any]:
     cell: dict[str, Any] = {}
     reference = found.get((task, arms, REFERENCE))
     for key, values in found[task, arms, name].items():
@@ -67,7 +61,7 @@ def _cell(found: Mapping[tuple[str, str, str], Mapping[str, np.ndarray]], task: 
     return cell
 
 
-@Program()
+@Program(stopped="stopped; the same command goes on")
 def main(arguments: Sequence[str]) -> int:
     """Evaluate, write the JSON file and the table, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.evaluate", description=__doc__)
@@ -85,11 +79,11 @@ def main(arguments: Sequence[str]) -> int:
             raise InputError(f"no controller '{name}'{did_you_mean(name, CONTROLLERS)}")
     if asked.count < 1 or asked.jobs < 1:
         raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
-    Arm.load(asked.arm)
+    arm = Arm.load(asked.arm)
     make_folder(asked.save, "baselines.json", "baselines.md")
     began = time.perf_counter()
     first_seed = DEVELOPMENT_SEED if asked.development else FIRST_SEED
-    cells = evaluate(asked.controllers, asked.arm, asked.count, asked.jobs, first_seed)
+    cells = evaluate(asked.controllers, arm, asked.count, first_seed, cells_place(asked.save, "baselines"), asked.jobs)
     command = f"python -m agents.evaluate --arm {asked.arm} --count {asked.count}{' --development' * asked.development}"
     result = {
         **origin_of(command, first_seed),

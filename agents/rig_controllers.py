@@ -1,10 +1,11 @@
-"""Controllers for the machine: made and tuned for the nominal arm and for a corrected one, and the better of both."""
+"""Controllers for the machine: made and tuned for the nominal arm and for a corrected one, and the choice between both."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+
+import numpy as np
 
 from agents.evaluate import RATE
 from flexarm_env import Arm
@@ -12,7 +13,7 @@ from flexarm_env.controllers import make_controller
 from flexarm_env.controllers.tuned import shipped_controllers
 from flexarm_env.tasks import TASKS
 from flexarm_env.trials.measures import measure
-from flexarm_env.trials.rollout import Agent, roll_out
+from flexarm_env.trials.rollout import roll_out
 from flexarm_env.trials.score import cost
 from flexarm_env.trials.sets import DEVELOPMENT_SEED, SETS
 from flexarm_env.tuning.search import Budget, tune
@@ -23,6 +24,8 @@ CLASSICAL = ("pd", "vibration_dual", "shaped_zvd", "lqg")
 #: the shipped values of its law.
 RETUNED = ("pd", "lqg", "pid_compensated")
 RETUNING = Budget(trials=25, arms=8)
+#: Kinds of controllers of a law: designed or tuned for which arm. The first of equally good ones is chosen.
+KINDS = ("nominal", "corrected")
 #: Episodes of the corrected arm's simulation by which one of two controllers is chosen.
 REHEARSALS = 8
 
@@ -41,33 +44,38 @@ def retune(law: str, arm: Arm, place: Path) -> None:
         left.unlink(missing_ok=True)
 
 
-def controllers_of(folder: Path, case: str) -> dict[str, list[Any]]:
-    """Make the controllers of the nominal arm and of a case's corrected one, and name the one chosen of both.
-
-    As they are, and tuned where that is stored.
-    """
-    corrected = folder / "arms" / f"{case}.toml"
-    arms = {"nominal": (NOMINAL, "nominal"), "corrected": (corrected, case)}
-    makers = {law: {kind: law for kind in arms} for law in CLASSICAL}
-    for law in RETUNED:
-        places = {kind: tuned_place(folder, law, name) for kind, (_, name) in arms.items()}
-        makers[f"{law} tuned"] = {kind: str(place) for kind, place in places.items() if place.is_file()}
-    agents: dict[str, list[Any]] = {}
-    for who, of_kind in makers.items():
-        made = {kind: make_controller(maker, Arm.load(arms[kind][0]), 1.0 / RATE) for kind, maker in of_kind.items()}
-        if len(made) == len(arms):
-            made["chosen"] = better(Arm.load(corrected), list(made.values()))
-        agents |= {f"{who}, {kind}": [controller] for kind, controller in made.items()}
-    return agents
+def controllers_of(folder: Path, case: str) -> dict[str, tuple[str | Path, Arm]]:
+    """List laws, and their tuned controllers where stored, each with its arm: the nominal one and a case's corrected one."""
+    arms = {"nominal": (Arm.load(NOMINAL), "nominal"), "corrected": (Arm.load(folder / "arms" / f"{case}.toml"), case)}
+    found: dict[str, tuple[str | Path, Arm]] = {}
+    for law in dict.fromkeys((*CLASSICAL, *RETUNED)):
+        for kind, (arm, name) in arms.items():
+            place = tuned_place(folder, law, name)
+            if law in CLASSICAL:
+                found[f"{law}, {kind}"] = law, arm
+            if place.is_file():
+                found[f"{law} tuned, {kind}"] = place, arm
+    return found
 
 
-def better(arm: Arm, agents: Sequence[Agent]) -> Agent:
-    """Choose the agent of least cost in simulations of an arm; the first of equal ones.
+def rehearse(law: str | Path, arm: Arm, corrected: Arm) -> dict[str, np.ndarray]:
+    """Let a law, or a tuned controller in a file, made for an arm, drive the corrected arm in simulation: each measure."""
+    controller = make_controller(str(law), arm, 1.0 / RATE)
+    return measure(
+        roll_out(controller, TASKS["slew"], corrected, SETS["nominal"], REHEARSALS, RATE, DEVELOPMENT_SEED), TASKS["slew"]
+    )
+
+
+def chosen(rehearsed: Mapping[str, Mapping[str, np.ndarray]]) -> dict[str, str]:
+    """Choose for each law, or its tuned form, the controller of less cost in simulations of the corrected arm: its kind.
 
     A model corrected by one effect can make a controller worse on the machine: a torque that it now takes away had helped
     another over its friction. The corrected arm's simulation shows it before the machine does.
+
+    Args:
+        rehearsed: measures (episodes,) by the name of each controller, "pd tuned, corrected".
     """
-    task, drawn = TASKS["slew"], SETS["nominal"]
-    runs = [measure(roll_out(agent, task, arm, drawn, REHEARSALS, RATE, DEVELOPMENT_SEED), task) for agent in agents]
-    costs = [float(cost(found).mean()) for found in runs]
-    return agents[costs.index(min(costs))]
+    costs = {name: float(cost(found).mean()) for name, found in rehearsed.items()}
+    laws = dict.fromkeys(name.rpartition(", ")[0] for name in costs)
+    both = [law for law in laws if all(f"{law}, {kind}" in costs for kind in KINDS)]
+    return {law: min(KINDS, key=lambda kind: costs[f"{law}, {kind}"]) for law in both}

@@ -1,4 +1,7 @@
-"""Compare controllers and policies on machines other than they were made for: python -m agents.robustness."""
+"""Compare controllers and policies on machines other than they were made for: python -m agents.robustness.
+
+Stopped, the same command goes on.
+"""
 
 from __future__ import annotations
 
@@ -11,23 +14,19 @@ from typing import Any
 
 import numpy as np
 
-from agents.compare import find_policies
-from agents.evaluate import RATE, evaluate_controller
+from agents.cells import Values, compute_cells
+from agents.compare import evaluate_any, find_policies
 from agents.goals import mean
 from agents.learning.artefact import Artefact
-from agents.results import origin_of, write_results
+from agents.results import cells_place, origin_of, write_results
 from agents.robustness_report import report_of
 from agents.statistics import Interval, improvement, stratified_interval
 from agents.train import FOLDER as WEIGHTS
 from flexarm_env import Arm, InputError
 from flexarm_env.controllers import CONTROLLERS
 from flexarm_env.errors import did_you_mean
-from flexarm_env.identify.workers import Workers
-from flexarm_env.tasks import TASKS
 from flexarm_env.terminal.outputs import make_folder
 from flexarm_env.terminal.program import Program
-from flexarm_env.trials.measures import MEASURES, measure
-from flexarm_env.trials.rollout import roll_out
 from flexarm_env.trials.score import cost, worst_tenth
 from flexarm_env.trials.sets import DEVELOPMENT_SEED, FIRST_SEED, ROBUSTNESS
 
@@ -35,18 +34,6 @@ FOLDER = Path(__file__).resolve().parent.parent / "results" / "robustness"
 TASK = "slew"
 #: Measures of the report.
 SHOWN = ("settling_time", "unsettled", "steady_error", "residual_strain")
-Values = Mapping[str, np.ndarray]
-
-
-def evaluate_any(who: str | Sequence[Path], arms: str, arm: str, count: int, first_seed: int) -> dict[str, np.ndarray]:
-    """Evaluate a controller, as one run, or a configuration's runs: each measure (runs, arms)."""
-    if isinstance(who, str):
-        found = evaluate_controller(who, TASK, arms, arm, count, first_seed)
-        return {name: values[None] for name, values in found.items()}
-    nominal, drawn = Arm.load(arm), ROBUSTNESS[arms]
-    agents = [Artefact.load(path).agent(1.0 / (RATE * drawn.rate_share)) for path in who]
-    runs = [measure(roll_out(agent, TASKS[TASK], nominal, drawn, count, RATE, first_seed), TASKS[TASK]) for agent in agents]
-    return {name: np.array([run[name] for run in runs]) for name in MEASURES}
 
 
 def cell_of(values: Values) -> dict[str, Any]:
@@ -85,17 +72,13 @@ def _with_names(found: Interval) -> dict[str, float]:
 
 
 def evaluate(
-    agents: Mapping[str, str | Sequence[Path]], arm: str, count: int, first_seed: int, jobs: int
+    agents: Mapping[str, str | Sequence[Path]], arm: Arm, count: int, first_seed: int, folder: Path, jobs: int
 ) -> dict[str, dict[str, Values]]:
     """Evaluate agents on every set: each measure (runs, arms), by set and agent."""
-    work = [(arms, name) for arms in ROBUSTNESS for name in agents]
-    running = Workers(jobs).spread([(evaluate_any, (agents[name], arms, arm, count, first_seed)) for arms, name in work])
-    found: dict[str, dict[str, Values]] = {arms: {} for arms in ROBUSTNESS}
-    for done, ((arms, name), values) in enumerate(zip(work, running, strict=True)):
-        found[arms][name] = values
-        print(f"\r{done + 1} of {len(work)}: {arms} · {name:<40}", end="", file=sys.stderr, flush=True)
-    print(file=sys.stderr)
-    return found
+    cells = [(arms, name) for arms in ROBUSTNESS for name in agents]
+    work = {(arms, name): (evaluate_any, (agents[name], TASK, arms, arm, count, first_seed)) for arms, name in cells}
+    found = compute_cells(work, folder, jobs)
+    return {arms: {name: found[arms, name] for name in agents} for arms in ROBUSTNESS}
 
 
 def chosen(names: Sequence[str], folder: Path) -> dict[str, str | Sequence[Path]]:
@@ -134,7 +117,7 @@ def first_seed_of(asked: argparse.Namespace) -> int:
     return DEVELOPMENT_SEED if asked.development else FIRST_SEED
 
 
-@Program()
+@Program(stopped="stopped; the same command goes on")
 def main(arguments: Sequence[str]) -> int:
     """Compare, write JSON and Markdown, and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m agents.robustness", description=__doc__)
@@ -150,8 +133,8 @@ def main(arguments: Sequence[str]) -> int:
     if asked.count < 1 or asked.jobs < 1:
         raise InputError(f"--count {asked.count}, --jobs {asked.jobs}; give whole numbers from 1 up")
     make_folder(asked.save, "robustness.json", "robustness.md")
-    agents = chosen(asked.names, asked.policies)
-    values = evaluate(agents, asked.arm, asked.count, first_seed_of(asked), asked.jobs)
+    agents, arm, place = chosen(asked.names, asked.policies), Arm.load(asked.arm), cells_place(asked.save, "robustness")
+    values = evaluate(agents, arm, asked.count, first_seed_of(asked), place, asked.jobs)
     result = result_of(asked, agents, values, time.perf_counter() - began)
     place = write_results(asked.save, "robustness", result, report_of(result))
     print(f"{place}: {len(agents)} controllers and policies, {result['seconds']} s")

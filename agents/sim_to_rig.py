@@ -2,7 +2,7 @@
 
 The machine is the independent simulator of tests/rig with something hidden. Policies are trained, and classical
 controllers made and tuned, for the nominal arm, the nominal arm randomised (policies only) and the arm that `diagnose`
-corrected from three recordings of the machine; all then drive the machine.
+corrected from three recordings of the machine; all then drive the machine. Stopped, the same command goes on.
 """
 
 from __future__ import annotations
@@ -16,26 +16,29 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from agents.cells import Name, Values, compute_cells
 from agents.evaluate import RATE
 from agents.learning.artefact import Artefact
 from agents.learning.options import Plan
 from agents.learning.plan_file import read_plan
-from agents.results import origin_of, write_results
+from agents.results import cells_place, origin_of, write_results
 from agents.rig import drive
-from agents.rig_controllers import NOMINAL, RETUNED, controllers_of, retune, tuned_place
+from agents.rig_controllers import NOMINAL, RETUNED, chosen, controllers_of, rehearse, retune, tuned_place
 from agents.rig_report import report_of, verdict_of
 from agents.train import place_of
 from flexarm_env import Arm, InputError, Recording, __version__, diagnose
+from flexarm_env.controllers import make_controller
 from flexarm_env.files import read_json, write_whole
+from flexarm_env.identify.workers import Task
 from flexarm_env.tasks import TASKS
 from flexarm_env.terminal.outputs import make_folder
 from flexarm_env.terminal.program import Program
 from flexarm_env.terminal.provenance import commit
 from flexarm_env.trials.measures import MEASURES, measure
+from flexarm_env.trials.rollout import Agent
 from flexarm_env.trials.sets import FIRST_SEED
 from tests.rig import write_case
 
@@ -106,20 +109,41 @@ def policies_of(folder: Path, kind: str, case: str) -> list[Path]:
     return [path for seed in range(plan.seeds) if (path := place_of(folder / "weights", name, seed)).is_file()]
 
 
-def evaluate(folder: Path, case: str, count: int, say: Callable[[str], None]) -> dict[str, dict[str, np.ndarray]]:
-    """Evaluate all policies and controllers on a machine: each measure (runs, episodes)."""
+def drive_policies(paths: Sequence[Path], case: str, count: int) -> dict[str, np.ndarray]:
+    """Let the runs of a kind of policy drive a machine: each measure (runs, episodes)."""
+    return _driven([Artefact.load(path).agent() for path in paths], case, count)
+
+
+def drive_controller(law: str | Path, arm: Arm, case: str, count: int) -> dict[str, np.ndarray]:
+    """Let a law, or a tuned controller in a file, made for an arm, drive a machine: each measure (1, episodes)."""
+    return _driven([make_controller(str(law), arm, 1.0 / RATE)], case, count)
+
+
+def _driven(agents: Sequence[Agent], case: str, count: int) -> dict[str, np.ndarray]:
     settings, task = CASES[case][0], TASKS["slew"]
-    agents: dict[str, list[Any]] = {}
-    for kind in PLANS:
-        agents[f"policy, {kind}"] = [Artefact.load(path).agent() for path in policies_of(folder, kind, case)]
-    agents |= controllers_of(folder, case)
-    found = {}
-    for name, runs in agents.items():
-        say(f"{case}: {name}")
-        seen = [measure(drive(agent, task, settings, count, RATE), task) for agent in runs]
-        if seen:
-            found[name] = {key: np.array([values[key] for values in seen]) for key in MEASURES}
-    return found
+    seen = [measure(drive(agent, task, settings, count, RATE), task) for agent in agents]
+    return {key: np.array([values[key] for values in seen]) for key in MEASURES}
+
+
+def evaluate(folder: Path, cases: Sequence[str], count: int, jobs: int) -> dict[str, dict[str, Values]]:
+    """Evaluate all policies and controllers on the machines: each measure (runs, episodes), by case and agent."""
+    work: dict[Name, Task] = {}
+    for case in cases:
+        corrected = Arm.load(folder / "arms" / f"{case}.toml")
+        for kind in PLANS:
+            work["machine", case, f"policy, {kind}"] = (drive_policies, (policies_of(folder, kind, case), case, count))
+        for name, (law, arm) in controllers_of(folder, case).items():
+            work["machine", case, name] = (drive_controller, (law, arm, case, count))
+            work["simulation", case, name] = (rehearse, (law, arm, corrected))
+    found = compute_cells(work, cells_place(folder, "sim_to_rig"), jobs)
+    every = {}
+    for case in cases:
+        driven, rehearsed = (
+            {name: values for (where, own, name), values in found.items() if (where, own) == (place, case)}
+            for place in ("machine", "simulation")
+        )
+        every[case] = driven | {f"{law}, chosen": driven[f"{law}, {kind}"] for law, kind in chosen(rehearsed).items()}
+    return every
 
 
 @Program(stopped="stopped; the same command goes on")
@@ -128,7 +152,7 @@ def main(arguments: Sequence[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m agents.sim_to_rig", description=__doc__.partition("\n")[0])
     parser.add_argument("--make", action="store_true", help="first diagnose and train what is not there; stopped, it goes on")
     parser.add_argument("--count", type=int, default=20, help="episodes on each machine; 20 by default")
-    parser.add_argument("--jobs", type=int, default=2, help="processes of a diagnosis; 2 by default")
+    parser.add_argument("--jobs", type=int, default=2, help="processes; 2 by default")
     parser.add_argument("--save", type=Path, default=FOLDER, help="folder of arms, policies and results; results/sim_to_rig")
     asked = parser.parse_args(arguments)
     began = time.perf_counter()
@@ -144,7 +168,7 @@ def main(arguments: Sequence[str]) -> int:
     there = [case for case in CASES if all(policies_of(asked.save, kind, case) for kind in PLANS)]
     if not there:
         raise InputError(f"no policies in {asked.save}; add --make to diagnose and train")
-    values = {case: evaluate(asked.save, case, asked.count, say) for case in there}
+    values = evaluate(asked.save, there, asked.count, asked.jobs)
     result = {
         **origin_of(f"python -m agents.sim_to_rig --count {asked.count}", FIRST_SEED),
         "episodes": asked.count,
@@ -154,7 +178,7 @@ def main(arguments: Sequence[str]) -> int:
         "cases": {case: verdict_of(found) for case, found in values.items()},
     }
     place = write_results(asked.save, "sim_to_rig", result, report_of(result))
-    print(f"\n{place}: {result['seconds']} s")
+    print(f"{place}: {result['seconds']} s")
     return 0
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import io
 import warnings
 from pathlib import Path
@@ -14,12 +13,11 @@ from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
 from agents.learning.episodes import EpisodeVecEnv
+from agents.seal import sealed, unsealed
 from flexarm_env.errors import InputError
 from flexarm_env.files import read_whole, write_whole
 
-#: A checkpoint begins with this and the SHA-256 of what follows, so that no damaged one is read.
 MARK = b"flexarm-checkpoint-1\n"
-DIGEST = hashlib.sha256().digest_size
 LARGEST_FILE = 1_000_000_000
 
 
@@ -39,12 +37,7 @@ def write_checkpoint(path: Path, model: BaseAlgorithm, env: EpisodeVecEnv, run: 
     }
     whole = io.BytesIO()
     torch.save(state, whole)
-    write_whole(path, sealed(whole.getvalue()))
-
-
-def sealed(content: bytes) -> bytes:
-    """Put the mark and the digest of a checkpoint before its content."""
-    return MARK + hashlib.sha256(content).digest() + content
+    write_whole(path, sealed(MARK, whole.getvalue()))
 
 
 def read_checkpoint(path: Path) -> dict[str, Any]:
@@ -53,9 +46,8 @@ def read_checkpoint(path: Path) -> dict[str, Any]:
     Raises:
         InputError: for a file that is no checkpoint.
     """
-    whole = read_whole(path, LARGEST_FILE, "delete it to start anew")
-    content = whole[len(MARK) + DIGEST :]
-    if whole != sealed(content):
+    content = unsealed(MARK, read_whole(path, LARGEST_FILE, "delete it to start anew"))
+    if content is None:
         raise InputError(f"{path} is no checkpoint, or a damaged one; delete it to start anew")
     try:
         with warnings.catch_warnings():

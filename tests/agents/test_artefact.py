@@ -16,9 +16,10 @@ from safetensors.torch import load_file, save_file
 from small_plans import silent, small
 
 from agents.learning.artefact import Artefact
-from agents.learning.checkpoint import sealed
+from agents.learning.checkpoint import MARK
 from agents.learning.options import ALGORITHMS
 from agents.learning.run import train
+from agents.seal import sealed
 from flexarm_env import Arm, InputError
 from flexarm_env.tasks import TASKS
 from flexarm_env.trials.measures import measure
@@ -72,7 +73,8 @@ def test_loading_runs_no_code(tmp_path: Path) -> None:
         Artefact.load(tmp_path / "bad-0.safetensors")
     forged = io.BytesIO()
     torch.save({"run": Harm()}, forged)
-    for content in (pickle.dumps({"run": Harm()}), sealed(pickle.dumps({"run": Harm()})), sealed(forged.getvalue())):
+    harmful = pickle.dumps({"run": Harm()})
+    for content in (harmful, sealed(MARK, harmful), sealed(MARK, forged.getvalue())):
         (tmp_path / "bad-0.checkpoint").write_bytes(content)
         with pytest.raises(InputError, match="no checkpoint"):
             train(small(), 0, tmp_path / "bad-0.checkpoint", silent)

@@ -99,7 +99,7 @@ def test_everyone_drives_the_same_arms(arms: str) -> None:
 
 
 def test_more_arms_leave_the_first_ones_as_they_were() -> None:
-    few, many = (evaluate_controller("vibration_dual", "slew", "randomised", "thesis", n) for n in (3, 8))
+    few, many = (evaluate_controller("vibration_dual", "slew", "randomised", Arm.load("thesis"), n) for n in (3, 8))
     for name in MEASURES:
         assert np.array_equal(few[name], many[name][:3])
 

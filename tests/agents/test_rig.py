@@ -11,7 +11,7 @@ pytest.importorskip("stable_baselines3")
 
 from agents.goals import GOALS
 from agents.rig import Machine, drive
-from agents.rig_controllers import better, controllers_of, tuned_place
+from agents.rig_controllers import chosen, controllers_of, rehearse, tuned_place
 from agents.rig_report import less_by, verdict_of
 from agents.sim_to_rig import CASES, main, plan_of, wanted
 from flexarm_env import Arm
@@ -72,19 +72,22 @@ def test_each_law_is_made_and_tuned_for_both_arms(tmp_path) -> None:
     found = controllers_of(tmp_path, "bias")
     assert {"pd, nominal", "pd, corrected", "lqg, corrected", "pd tuned, nominal", "pd tuned, corrected"} <= set(found)
     assert "lqg tuned, corrected" not in found  # not made
-    (nominal,), (corrected,) = found["pd tuned, nominal"], found["pd tuned, corrected"]
+    nominal, corrected = (
+        make_controller(str(law), arm, 0.005) for law, arm in (found["pd tuned, nominal"], found["pd tuned, corrected"])
+    )
     assert (nominal.proportional, corrected.proportional) == (2.0, 6.0)
     assert nominal.loads.torque == 0.0 != corrected.loads.torque
-    assert found["pd tuned, chosen"][0] in (nominal, corrected)
-    assert not {"lqg tuned, nominal", "lqg tuned, chosen"} & set(found)
 
 
-def test_of_two_controllers_the_one_is_chosen_that_a_simulation_of_the_arm_shows_to_be_better() -> None:
-    arm = Arm.load("thesis-fem")
-    weak, strong = (make_controller("pd", arm, 0.005, proportional=gain) for gain in (0.5, 12.0))
-    assert better(arm, [weak, strong]) is strong
-    assert better(arm, [strong, weak]) is strong
-    assert better(arm, [weak, weak]) is weak
+def test_of_two_controllers_the_one_is_chosen_that_a_simulation_of_the_arm_shows_to_be_better(tmp_path) -> None:
+    arm, found = Arm.load("thesis-fem"), {}
+    for kind, gain in (("weak", 0.5), ("strong", 12.0)):
+        TunedController("pd", "thesis-fem", "0.1.0", {"proportional": gain}).save(tmp_path / f"{kind}.toml")
+        found[kind] = rehearse(tmp_path / f"{kind}.toml", arm, arm)
+    weak, strong = found["weak"], found["strong"]
+    assert chosen({"pd, nominal": weak, "pd, corrected": strong}) == {"pd": "corrected"}
+    assert chosen({"pd, nominal": strong, "pd, corrected": weak}) == {"pd": "nominal"}
+    assert chosen({"pd, nominal": weak, "pd, corrected": weak, "lqg, corrected": weak}) == {"pd": "nominal"}
 
 
 def test_the_cost_is_the_logarithm_of_the_geometric_mean() -> None:

@@ -105,8 +105,8 @@ def test_the_best_of_each_kind_are_compared() -> None:
 
 
 def test_a_controller_is_made_for_the_rate_at_which_it_runs() -> None:
-    found = command.evaluate_any("lqg", "half_rate", "thesis", 2, 0)
     arm, arms = Arm.load("thesis"), ROBUSTNESS["half_rate"]
+    found = command.evaluate_any("lqg", "slew", "half_rate", arm, 2, 0)
     seen = roll_out(make_controller("lqg", arm, 2.0 * INTERVAL), TASKS["slew"], arm, arms, 2, first_seed=0)
     assert found["steady_error"][0] == pytest.approx(np.rad2deg(np.abs(seen.tip - seen.target)[-50:].mean(axis=0)))
 

@@ -11,12 +11,13 @@ import pytest
 
 pytest.importorskip("stable_baselines3")
 
-from agents.compare import evaluate_policies, find_policies
+from agents.compare import evaluate_any, find_policies
 from agents.goals import GOALS, cell_of
 from agents.learning.artefact import Artefact
 from agents.learning.plan_file import read_plan
 from agents.rig import drive
 from agents.sim_to_rig import CASES, PLANS, plan_of, policies_of
+from flexarm_env import Arm
 from flexarm_env.tasks import TASKS
 from flexarm_env.trials.measures import measure
 
@@ -58,7 +59,7 @@ def test_the_table_is_of_the_stored_policies() -> None:
 def test_the_table_is_made_again_from_what_is_stored() -> None:
     result = json.loads(TABLE.read_text(encoding="utf-8"))
     paths = find_policies(RESULTS / "policies" / "weights")["ppo_slew"]
-    again = cell_of(evaluate_policies(paths, "slew", "randomised", "thesis", result["arms"]))
+    again = cell_of(evaluate_any(paths, "slew", "randomised", Arm.load("thesis"), result["arms"]))
     cells = result["tasks"]["slew"]["randomised"]["cells"]["ppo_slew"]
     for name in GOALS:
         # a stick-slip trajectory may go another way where a processor rounds otherwise
