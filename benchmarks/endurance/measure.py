@@ -23,6 +23,7 @@ class Outcome:
         seconds: of all timed calls [s].
         median: time of a call [s].
         slowest: the longest call [s].
+        slowest_cpu: CPU time of that call [s]; where it is much less, the machine had other work, and the call waited for a core.
         not_finite: call and quantity of the first NaN or infinity, after which nothing is measured; "" for none.
     """
 
@@ -31,6 +32,7 @@ class Outcome:
     seconds: float
     median: float
     slowest: float
+    slowest_cpu: float
     not_finite: str
 
     def as_json(self) -> dict[str, Any]:
@@ -50,10 +52,11 @@ def endure(part: Part, envs: Any, clock: Callable[[], float] = time.perf_counter
     envs.reset(seed=int(arms.generate_state(1)[0]))
     drawn = actions(np.random.default_rng(draws), part.calls + 1, envs.action_space.shape)
     envs.step(next(drawn))
-    times, episodes, not_finite = [], 0, ""
+    times, cpu_times, episodes, not_finite = [], [], 0, ""
     for action in drawn:
-        began = clock()
+        began, cpu_began = clock(), time.thread_time()
         observations, rewards, terminated, truncated, _ = envs.step(action)
+        cpu_times.append(time.thread_time() - cpu_began)
         times.append(clock() - began)
         episodes += int(np.count_nonzero(terminated | truncated))
         looked_at = {"observations": observations, "rewards": rewards, "states": envs.batch.states}
@@ -61,4 +64,6 @@ def endure(part: Part, envs: Any, clock: Callable[[], float] = time.perf_counter
         if odd:
             not_finite = f"call {len(times)}: {' and '.join(odd)}"
             break
-    return Outcome(len(times), episodes, sum(times), float(np.median(times)), max(times), not_finite)
+    slowest = max(times)
+    cpu = cpu_times[times.index(slowest)]
+    return Outcome(len(times), episodes, sum(times), float(np.median(times)), slowest, cpu, not_finite)

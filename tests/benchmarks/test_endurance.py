@@ -68,6 +68,9 @@ def test_a_call_that_stalls_is_reported():
     result = result_of(Arms(slow=30))
     assert not table.kept(result)
     assert result["slowest_over_median"] == pytest.approx(1500.0)
+    (case,) = result["environments"]
+    assert (case["slowest_ms"], case["median_ms"]) == (1500.0, 1.0)
+    assert case["slowest_cpu_ms"] < 1500.0  # it did not work, it waited
     assert "1500 times the median one" in table.markdown(result)
 
 
