@@ -8,8 +8,10 @@ import hashlib
 import json
 import logging
 import os
+import signal
 import time
 from collections.abc import Callable, Iterator, Sequence
+from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import Any
 
@@ -69,9 +71,24 @@ def clusters() -> Iterator[dict[int, Any]]:
         clients = {}
         for workers in (1, 2):
             options = {"threads_per_worker": 1, "dashboard_address": "127.0.0.1:0", "silence_logs": logging.CRITICAL}
-            cluster = stack.enter_context(LocalCluster(n_workers=workers, **options))
+            with _ctrl_c_withheld():
+                cluster = stack.enter_context(LocalCluster(n_workers=workers, **options))
             clients[workers] = stack.enter_context(Client(cluster, set_as_default=False))
         yield clients
+
+
+@contextlib.contextmanager
+def _ctrl_c_withheld() -> Iterator[None]:
+    """Withhold Ctrl-C for good from workers that the block starts, which would show tracebacks; our own comes after the block."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    resource_tracker.ensure_running()  # where the first worker starts it, it lets Ctrl-C through to that worker
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def seconds_of(client: Any, workers: int, tasks: Sequence[Task]) -> float:
