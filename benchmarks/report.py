@@ -66,6 +66,7 @@ GOALS = (
     Goal("faults_named_percent", "faults of recordings named right", "%", least=97),
     Goal("faults_false_alarms", "false alarms on sound recordings", most=0),
     Goal("inspection_s", "inspection of three recordings of 10 s", "s", most=1),
+    Goal("scale_out", "two workers of a cluster over one, independent diagnoses", "×", least=1.8),
     Goal("ppo_env_percent", "share of PPO's time that the environments take", "%", most=5),
 )
 
@@ -101,6 +102,11 @@ def remarks(found: Mapping[str, Any]) -> list[str]:
             f"Ten such pulses on end, where the arm slides most of the time: {found['six_repeated_ns']:.0f} ns a step, "
             f"{found['six_repeated_over_base']:.2f} × as long as with one element and base friction.",
         ]
+    if "scale_out" in found:
+        lines.append(
+            f"Two workers: {found['scale_out']:.2f} × (median of the turns), where hashes alone got "
+            f"{found['scale_out_possible']:.2f} ×."
+        )
     if "single_over_pendulum" in found:
         lines += about_environments(found)
     measured = [g for g in GOALS if found.get(g.figure) is not None]

@@ -174,6 +174,20 @@ def versions_table(numbers: str) -> str:
     return markdown(json.loads(numbers))
 
 
+def endurance_words(numbers: str) -> str:
+    """Write what came of the endurance run."""
+    from benchmarks.endurance.table import words
+
+    return words(json.loads(numbers))
+
+
+def scale_out_words(numbers: str) -> str:
+    """Write how much faster two workers of a cluster are than one."""
+    from benchmarks.scale_out import words
+
+    return words(json.loads(numbers))
+
+
 def lines_with(first: str) -> Callable[[str], str]:
     """Make a function that takes the table with this beginning from a report in Markdown."""
 
@@ -199,6 +213,8 @@ class Table:
 
     @property
     def text(self) -> str:
+        if not self.numbers.exists():
+            return "No run is stored yet.\n"
         return self.make(self.numbers.read_text(encoding="utf-8"))
 
 
@@ -214,6 +230,8 @@ TABLES = (
     Table("recipes", PROJECT / "docs" / "learning.md", RESULTS / "recipe" / "recipe.md", lines_with("| observation")),
     Table("references", PROJECT / "docs" / "learning.md", RESULTS / "recipe" / "recipe.md", lines_with("| agent")),
     Table("versions", PROJECT / "CONTRIBUTING.md", RESULTS / "versions" / "versions.json", versions_table),
+    Table("endurance", PROJECT / "docs" / "reliability.md", RESULTS / "endurance" / "endurance.json", endurance_words),
+    Table("scale-out", PROJECT / "docs" / "cluster.md", RESULTS / "speed" / "scale_out.json", scale_out_words),
     Table("times", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.json", times_words),
 )
 
