@@ -162,7 +162,8 @@ class Search:
     def swap(self, trace: Trace, progress: Progress, untried: bool = False) -> Trace:
         """Give an effect's place to one that it is confused with, where that fits better beside everything else.
 
-        An effect that came in first was compared with its rivals while others were missing still, and a companion with none.
+        An effect that came in first was compared with its rivals while others were missing still, and a companion with none. One
+        that a simpler effect equals may fit better only because the simpler one's calibration ended early.
 
         Args:
             trace: so far.
@@ -172,8 +173,9 @@ class Search:
         for place, effect in enumerate(trace.effects):
             if not self.criteria.can_compare_rivals(trace.model):
                 break
-            is_companion = trace.model.arm.known[effect].pairs_with_all
-            if untried or is_companion or self.criteria.leaves_room(trace.model):
+            known = trace.model.arm.known
+            simpler = [n for n in trace.accepted[place].equivalent if len(known[n].parameters) < len(known[effect].parameters)]
+            if untried or simpler or known[effect].pairs_with_all or self.criteria.leaves_room(trace.model):
                 if self.is_late:
                     trace = self._stop(trace, f"{effect} was compared with its rivals")
                     break
