@@ -148,6 +148,22 @@ def test_absent_is_bit_equal_to_not_listed(arm, name):
 
 
 @pytest.mark.parametrize("name", NAMES)
+def test_next_to_absence_it_moves_next_to_nothing(arm, name):
+    effect = catalogue()[name]
+    small = {
+        key: value
+        if (p := effect.parameters[key]).null is None or p.is_count or p.null == math.inf
+        else p.null + 1e-9 * p.typical
+        for key, value in absent(effect).items()
+    }
+    without = arm.without_effect(name)
+    runs = [simulate(a, "square", duration=0.5) for a in (without, without.with_effect(name, **small))]
+    for signal in arm.signals:
+        was, now = (run.signals[signal] for run in runs)
+        assert np.abs(now - was).max() <= 0.02 * np.ptp(was) + 1e-9, signal
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_it_changes_what_is_measured(arm, name):
     base = arm.with_values({"beam.elements": 1.0}) if arm.has("beam") else arm
     with_it = base.without_effect(name).with_effect(name, **sized(catalogue()[name], 1.0))
