@@ -119,6 +119,8 @@ def test_fitted_intervals_and_origin_are_read_back(tmp_path):
     [
         ("name = ", 'name = ["x"]', "name = ['x'] is no text"),
         ("description = ", "description = {a = 1}", "description = {'a': 1} is no text"),
+        ("name = ", 'name = "a\\u0000b"', "has a character that cannot be printed"),
+        ("name = ", 'name = "a\\nb"', "has a character that cannot be printed"),
         ("elements = ", "elements = 2.5", "beam.elements = 2.5; write a whole number"),
     ],
 )
@@ -128,6 +130,23 @@ def test_another_kind_of_value_is_refused(tmp_path, line, instead, words):
     kept = [instead if one.startswith(line) else one for one in written]
     (tmp_path / "arm.toml").write_text("\n".join(kept if kept != written else [instead, *written]))
     with pytest.raises(InputError, match=re.escape(words)):
+        Arm.load(tmp_path / "arm.toml")
+
+
+@pytest.mark.parametrize(
+    ("entry", "path"),
+    [
+        ("[fitted]\na = 3", "a"),
+        ('[fitted."hub.inertia"]\nvalue = 1.0', "hub.inertia"),
+        ('[fitted."hub.inertia"]\nvalue = 1.0\nlow = "x"\nhigh = 2.0', "hub.inertia"),
+        ('[fitted."hub.inertia"]\nvalue = 1.0\nlow = true\nhigh = 2.0', "hub.inertia"),
+    ],
+)
+def test_an_interval_that_is_none_is_refused(tmp_path, entry, path):
+    Arm.load("thesis").save(tmp_path / "arm.toml")
+    with (tmp_path / "arm.toml").open("a") as file:
+        file.write(f"\n{entry}\n")
+    with pytest.raises(InputError, match=f"fitted.{path} lacks a number"):
         Arm.load(tmp_path / "arm.toml")
 
 
