@@ -91,7 +91,7 @@ def arm_from_table(kind: type[Arm], table: Mapping[str, Any], name: str, known: 
         columns=_table(table, "columns") if "columns" in table else None,
         conditions=_conditions(_table(table, "conditions", {}), constants),
         controller=law_from_table(table["controller"], command) if "controller" in table else None,
-        fitted=_table(table, "fitted", {}),
+        fitted=_fitted(_table(table, "fitted", {})),
         origin=_table(table, "origin", {}),
         description=_text(table, "description", ""),
         known=known,
@@ -116,6 +116,8 @@ def _text(table: Mapping[str, Any], key: str, default: str) -> str:
     given = table.get(key, default)
     if not isinstance(given, str):
         raise InputError(f'{key} = {given!r} is no text; write it in quotes, as {key} = "bench 2"')
+    if key == "name" and not given.isprintable():
+        raise InputError(f"{key} = {given!r} has a character that cannot be printed; take it out")
     return given
 
 
@@ -148,6 +150,15 @@ def _fixed(given: Any, constants: Mapping[str, Any], sensors: Mapping[str, Any])
         if path not in allowed:
             raise InputError(f"unknown constant '{path}' in fixed{did_you_mean(str(path), allowed)}")
     return [str(path) for path in given]
+
+
+def _fitted(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Read value, interval and unit of each fitted path, as they were saved."""
+    for path, entry in given.items():
+        numbers = [entry.get(key) for key in ("value", "low", "high")] if isinstance(entry, Mapping) else [None]
+        if any(isinstance(one, bool) or not isinstance(one, int | float) for one in numbers):
+            raise InputError(f"fitted.{path} lacks a number; write value, low and high as they were saved, or leave it out")
+    return dict(given)
 
 
 def _conditions(given: Mapping[str, Any], constants: Mapping[str, Any]) -> dict[str, str]:

@@ -71,7 +71,7 @@ def _constants(arm: Arm, section: str) -> Table:
     defaults = defaults_of(section, arm.input, arm.constants)
     for key, value in arm.constants[section].items():
         if defaults.get(key) != value:
-            _put(table, key, value, SECTIONS[section][key])
+            _put(table, key, value, SECTIONS[section][key].under(arm.input))
     return table
 
 
@@ -100,7 +100,7 @@ def _effects(arm: Arm) -> Table:
     for name, values in arm.effects.items():
         table = tomlkit.table()
         for key, value in values.items():
-            _put(table, key, value, arm.known[name].parameters[key])
+            _put(table, key, value, arm.known[name].parameters[key].under(arm.input))
         effects[name] = table
     return effects
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
@@ -13,6 +14,7 @@ import pytest
 
 from flexarm_env.arm import Arm
 from flexarm_env.arm_file import shipped_arms
+from flexarm_env.arm_text import arm_text
 from flexarm_env.effects import Catalogue, Effect, catalogue
 from flexarm_env.errors import InputError
 from flexarm_env.parameters import SENSOR, Parameter
@@ -30,16 +32,49 @@ def read_back(arm: Arm, folder: Path, known: Catalogue | None = None) -> Arm:
     return Arm.load(folder / "arm.toml", known)
 
 
-@pytest.mark.parametrize("level", ["low", "typical", "high"])
-@pytest.mark.parametrize("name", sorted(shipped_arms()))
-def test_every_effect_is_read_back_bit_for_bit(tmp_path, name, level):
+def complete(name: str, level: str) -> Arm:
+    """Give a shipped arm every effect that it can have, at the low, typical or high end of its bounds."""
     arm = Arm.load(name)
     for effect in filter(arm.can_have, catalogue()):
         arm = arm.with_effect(effect, **{key: getattr(p, level) for key, p in arm.known[effect].parameters.items()})
+    return arm
+
+
+@pytest.mark.parametrize("level", ["low", "typical", "high"])
+@pytest.mark.parametrize("name", sorted(shipped_arms()))
+def test_every_effect_is_read_back_bit_for_bit(tmp_path, name, level):
+    arm = complete(name, level)
     again = read_back(arm, tmp_path)
     assert bits(again.effects) == bits(arm.effects)
     assert bits(again.constants) == bits(arm.constants)
     assert bits(again.sensors) == bits(arm.sensors)
+
+
+@pytest.mark.parametrize("level", ["low", "typical", "high"])
+@pytest.mark.parametrize("name", sorted(shipped_arms()))
+def test_every_quantity_is_written_with_its_unit(name, level):
+    arm = complete(name, level)
+    table = tomllib.loads(arm_text(arm))
+    written = {f"{section}.{key}": value for section in arm.constants for key, value in table[section].items()}
+    for kind in ("sensors", "effects"):
+        written |= {f"{kind}.{name}.{key}": value for name, one in table[kind].items() for key, value in one.items()}
+    del written["drive.input"]
+    for path, value in written.items():
+        parameter = arm.parameter(path)
+        command = {"current": "A", "voltage": "V", "torque": "N*m", "position": "rad"}[arm.input]
+        unit = (
+            {"": command, "1/s": f"{command}/s"}.get(parameter.unit, parameter.unit) if parameter.of_command else parameter.unit
+        )
+        if isinstance(value, str):
+            assert value == "auto" or value.split(" ", 1)[1] == unit, path
+        else:
+            assert parameter.is_count or math.isinf(value) or not unit, path
+
+
+def test_a_quantity_of_the_command_is_written_in_the_unit_of_the_drive(tmp_path):
+    table = tomllib.loads(arm_text(voltage_arm(tmp_path)))
+    assert table["drive"]["limit"] == "10.0 V"
+    assert table["effects"] == {"dead_zone": {"width": "0.1 V"}, "rate_limit": {"rate": "30.0 V/s"}}
 
 
 @pytest.mark.parametrize("unit", UNITS)
@@ -84,6 +119,8 @@ def test_fitted_intervals_and_origin_are_read_back(tmp_path):
     [
         ("name = ", 'name = ["x"]', "name = ['x'] is no text"),
         ("description = ", "description = {a = 1}", "description = {'a': 1} is no text"),
+        ("name = ", 'name = "a\\u0000b"', "has a character that cannot be printed"),
+        ("name = ", 'name = "a\\nb"', "has a character that cannot be printed"),
         ("elements = ", "elements = 2.5", "beam.elements = 2.5; write a whole number"),
     ],
 )
@@ -93,6 +130,23 @@ def test_another_kind_of_value_is_refused(tmp_path, line, instead, words):
     kept = [instead if one.startswith(line) else one for one in written]
     (tmp_path / "arm.toml").write_text("\n".join(kept if kept != written else [instead, *written]))
     with pytest.raises(InputError, match=re.escape(words)):
+        Arm.load(tmp_path / "arm.toml")
+
+
+@pytest.mark.parametrize(
+    ("entry", "path"),
+    [
+        ("[fitted]\na = 3", "a"),
+        ('[fitted."hub.inertia"]\nvalue = 1.0', "hub.inertia"),
+        ('[fitted."hub.inertia"]\nvalue = 1.0\nlow = "x"\nhigh = 2.0', "hub.inertia"),
+        ('[fitted."hub.inertia"]\nvalue = 1.0\nlow = true\nhigh = 2.0', "hub.inertia"),
+    ],
+)
+def test_an_interval_that_is_none_is_refused(tmp_path, entry, path):
+    Arm.load("thesis").save(tmp_path / "arm.toml")
+    with (tmp_path / "arm.toml").open("a") as file:
+        file.write(f"\n{entry}\n")
+    with pytest.raises(InputError, match=f"fitted.{path} lacks a number"):
         Arm.load(tmp_path / "arm.toml")
 
 

@@ -27,6 +27,7 @@ def check(
 
     files = [Path(spec.rpartition(":")[0]) for spec in specs or () if ":" in spec]
     outputs.check_places(json, *places, read=[*read, *files])
+    outputs.check_suffixes(json, *places)
     if pictures:
         outputs.need_plots()
 

@@ -66,7 +66,7 @@ def _facts(id: str, arm: Arm) -> dict[str, Any]:
 
 def _ranges(arm: Arm, variation: Variation) -> dict[str, dict[str, Any]]:
     return {
-        path.removeprefix("effects."): {"from": low, "to": high, "unit": arm.parameter(path).unit}
+        path.removeprefix("effects."): {"from": low, "to": high, "unit": arm.parameter(path).under(arm.input).unit}
         for path, low, high in variation.ranges
     }
 

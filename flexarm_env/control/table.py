@@ -150,5 +150,10 @@ def _number(where: str, given: Any, unit: str) -> float:
 
 def _gain_text(gain: Gain, unit: str) -> Any:
     if len(gain) > 1:
-        return list(gain)
-    return gain[0] if isinstance(gain[0], str) else f"{gain[0]!r} {unit}"
+        return [_factor_text(factor) for factor in gain]
+    return gain[0] if isinstance(gain[0], str) else f"{float(gain[0])!r} {unit}"
+
+
+def _factor_text(factor: float | str) -> float | str:
+    stated = factor.unit if isinstance(factor, units.BaseValue) else ""
+    return f"{float(factor)!r} {stated}" if stated else factor

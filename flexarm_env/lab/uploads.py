@@ -9,6 +9,7 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 from flexarm_env.lab.guard import LARGEST_BODY
+from flexarm_env.recordings.copies import with_copies_noted
 from flexarm_env.recordings.recording import Recording
 from flexarm_env.terminal.inputs import read_recordings
 
@@ -50,7 +51,7 @@ def read_upload(arm: Arm, name: str, content: bytes, columns: Path | None, prese
             raise InputError(f"{file}: a recording '{one.name}' is here already; remove it or rename the file")
     if sum(map(len, [*present, *found])) > MOST_SAMPLES:
         raise InputError(f"{file}: makes more than {MOST_SAMPLES} samples in all; cut the recordings shorter")
-    return found
+    return with_copies_noted([*present, *found])[len(present) :]
 
 
 def plain_name(name: str) -> str:

@@ -36,9 +36,10 @@ def _(arm: Arm) -> str:
     paths += [f"effects.{name}.{key}" for name, table in arm.effects.items() for key in table]
     rows = []
     for path in paths:
+        unit = arm.parameter(path).under(arm.input).unit
         fitted = arm.fitted.get(path)
         spread = "" if fitted is None else f"{words.number(fitted['low'], 4)} to {words.number(fitted['high'], 4)}"
-        rows.append([short_name(path), words.number(arm.value(path), 4), spread, words.plain_unit(arm.parameter(path).unit)])
+        rows.append([short_name(path), words.number(arm.value(path), 4), spread, words.plain_unit(unit)])
     heading = f"Arm {arm.name}, {arm.input} drive, measures {', '.join(arm.signals)}"
     return _table(heading, ["value", "", "90 % interval", "unit"], rows)
 

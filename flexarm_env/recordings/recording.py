@@ -21,6 +21,7 @@ from flexarm_env.recordings.checks import as_vector, check_conditions
 from flexarm_env.recordings.clock import RestartError
 from flexarm_env.recordings.column_maps import load_columns
 from flexarm_env.recordings.columns import ColumnMap, Source, check_calibration
+from flexarm_env.recordings.copies import with_copies_noted
 from flexarm_env.recordings.csv_text import csv_text
 from flexarm_env.recordings.episodes import check_episodes, episodes_of
 from flexarm_env.recordings.files import PathLike, read_bytes
@@ -247,7 +248,7 @@ class Recording(Shown):
     ) -> list[Recording]:
         """Read the recordings in files and folders; a folder stands for those in it, sorted by name, or for its LeRobot data set.
 
-        Where names would come twice, they have the folder's name before them. Arguments as `read`.
+        A copy of another has a note. Where names would come twice, they have the folder's name before them. Arguments as `read`.
 
         Raises:
             InputError: as `read`; for a folder without recordings; for a file named twice.
@@ -268,7 +269,7 @@ class Recording(Shown):
         files = recording_files(named, layout)
         recordings = [one for file in files for one in cls.read_each(file, layout, calibration, require_signal)]
         check_episodes(len(recordings), layout)
-        return with_distinct_names(recordings)
+        return with_copies_noted(with_distinct_names(recordings))
 
     def write(self, path: PathLike) -> None:
         """Write a CSV file that `read` gives back bit for bit; the file is whole or not there.

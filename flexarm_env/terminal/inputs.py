@@ -13,6 +13,7 @@ from flexarm_env.errors import InputError
 from flexarm_env.recordings.arm_columns import layout_of, stands_alone
 from flexarm_env.recordings.column_maps import load_columns
 from flexarm_env.recordings.columns import CALIBRATED, ColumnMap
+from flexarm_env.recordings.copies import with_copies_noted
 from flexarm_env.recordings.episodes import check_episodes
 from flexarm_env.recordings.files import files_of
 from flexarm_env.recordings.joined import recording_files
@@ -41,7 +42,8 @@ def read_recordings(arm: Arm, paths: Sequence[Path], columns: Path | None, requi
     else:
         layout = _layout(arm)
         files = _files(paths, layout, require_signal)
-        recordings = with_distinct_names([one for file in files for one in _read(arm, file, layout, require_signal)])
+        distinct = with_distinct_names([one for file in files for one in _read(arm, file, layout, require_signal)])
+        recordings = with_copies_noted(distinct)
         check_episodes(len(recordings), layout)
     for recording in recordings:
         _check_fits(arm, recording, require_signal)

@@ -15,6 +15,14 @@ from flexarm_env.errors import InputError
 from flexarm_env.files import write_whole
 
 STDOUT = Path("-")
+#: Suffixes of forms that no text or page has: of loggers, pictures, documents and archives.
+OTHER_FORMS = frozenset(
+    f".{name}"
+    for name in (
+        *("mat", "parquet", "mcap", "db3", "lvm", "tdms", "h5", "hdf5", "npy", "npz", "pkl", "bag"),
+        *("pdf", "png", "jpg", "jpeg", "svg", "xls", "xlsx", "ods", "docx", "zip", "gz"),
+    )
+)
 
 
 def check_places(json: Path | None, *others: Path | None, read: Iterable[Path] = ()) -> None:
@@ -48,6 +56,20 @@ def check_places(json: Path | None, *others: Path | None, read: Iterable[Path] =
             raise InputError(f"cannot write {path}: folder {path.parent} is not writable; name another")
         if path.exists() and not os.access(path, os.W_OK):
             raise InputError(f"cannot write {path}: it is there and must not be written; name another")
+
+
+def check_suffixes(*places: Path | None) -> None:
+    """Refuse places for text and pages with a suffix by which other programs, and the reader of recordings, expect another form.
+
+    Raises:
+        InputError: for such a place.
+    """
+    for path in places:
+        if path is not None and path.suffix.lower() in OTHER_FORMS:
+            raise InputError(
+                f"cannot write {path}: it would be no {path.suffix} file; end it in .csv for a recording, .toml for an arm, "
+                ".html for a page or .json"
+            )
 
 
 def need_plots() -> None:

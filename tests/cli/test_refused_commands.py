@@ -71,6 +71,15 @@ def test_places_that_cannot_be_written_are_refused_before_the_work(flexarm, iden
     assert identify.log == []
 
 
+@pytest.mark.parametrize("suffix", [".mat", ".parquet", ".PDF", ".png", ".xlsx", ".gz"])
+@pytest.mark.parametrize("option", ["--json", "--save", "--report"])
+def test_a_suffix_of_another_form_is_refused_before_the_work(flexarm, identify, runs, tmp_path, option, suffix):
+    assert f"would be no {suffix} file" in flexarm.refused("diagnose", runs, option, tmp_path / f"out{suffix}")
+    assert f"would be no {suffix} file" in flexarm.refused("simulate", "--save", tmp_path / f"out{suffix}")
+    assert identify.log == []
+    assert not list(tmp_path.glob("out*"))
+
+
 def test_nothing_that_is_read_or_written_is_written_over(flexarm, identify, runs, tmp_path):
     one, other = runs / "pulse.csv", tmp_path / "out.toml"
     before = one.read_bytes()

@@ -100,6 +100,17 @@ def test_an_arm_file_keeps_the_law(tmp_path: Path, name: str):
             assert Arm.load(tmp_path / "arm.toml").controller == stated
 
 
+@pytest.mark.parametrize("factor", ["243 V*s/rad", "2 mV/deg", "0.3 kg", "-1.1 1/s", 1 / 3, "1e-300 V"])
+def test_a_factor_keeps_its_unit_in_the_arm_file(tmp_path: Path, factor: str | float):
+    law = law_from_table({"arm_angle": {"proportional": ["kp", factor]}}, "voltage")
+    replace(Arm.load("cu-rigid"), controller=law).save(tmp_path / "arm.toml")
+    again = Arm.load(tmp_path / "arm.toml").controller
+    assert again == law
+    before, after = (one.feedback[0].proportional[1] for one in (law, again))
+    assert getattr(after, "unit", "") == getattr(before, "unit", "")
+    assert (getattr(after, "unit", "") != "") == isinstance(factor, str)
+
+
 def test_arms_without_a_law_have_none(tmp_path: Path):
     Arm.load("thesis").save(tmp_path / "arm.toml")
     assert Arm.load(tmp_path / "arm.toml").controller is None

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from work import calls
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
@@ -201,10 +201,7 @@ def test_what_does_not_fit_is_refused(arm, tmp_path):
             made()
 
 
-def test_ten_seconds_in_closed_loop_take_a_fraction_of_one(arm):
-    def seconds() -> float:
-        start = time.perf_counter()
-        simulate(arm, "square")
-        return time.perf_counter() - start
-
-    assert min(seconds() for _ in range(3)) < 0.3
+def test_a_sample_in_closed_loop_takes_a_few_calls(arm):
+    samples = len(simulate(arm, "square", duration=1.0))  # compiles
+    more = calls(lambda: simulate(arm, "square", duration=3.0)) - calls(lambda: simulate(arm, "square", duration=1.0))
+    assert more < 20 * 2 * samples

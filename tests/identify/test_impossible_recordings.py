@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from flexarm_env import Arm, InputError, Recording, compare, diagnose, fit, inspect_recordings, simulate
+from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.select.starts import starts_of
 
 ARMS = ("thesis", "cu-rigid", "cu-flexible")
 COMMANDS: tuple[Callable[..., object], ...] = (compare, fit, diagnose, inspect_recordings)
@@ -60,3 +62,24 @@ def test_a_command_of_another_kind_is_named_as_it_is(kind):
     run = Recording("run", np.arange(20) / 100.0, kind, np.zeros(20), {"arm_angle": np.zeros(20)})
     with pytest.raises(InputError, match=f"run holds {kind}, but arm 'dfki-pendulum' is driven by torque; correct drive.input"):
         compare(arm, [run])
+
+
+@pytest.mark.parametrize("name", ARMS)
+@pytest.mark.parametrize("command", COMMANDS)
+def test_noise_below_the_rounding_of_readings_is_refused(name, command):
+    arm = Arm.load(name)
+    run = simulate(arm, "square", duration=1.0, rate=200.0, name="run")
+    fine = arm.with_values({"sensors.arm_angle.noise": 1e-300, "sensors.arm_angle.resolution": 0.0})
+    with pytest.raises(InputError, match=r"sensors.arm_angle.noise = 1e-300 is below the rounding of readings in run") as caught:
+        command(fine, [run])
+    assert str(caught.value).isprintable()
+
+
+def test_noise_beyond_any_offset_leaves_starts_within_bounds():
+    arm = Arm.load("cu-rigid").with_values({"sensors.arm_angle.noise": 1e6})
+    run = simulate(Arm.load("cu-rigid"), "square", duration=1.0, rate=200.0, name="run")
+    nominal, dataset = prepare(arm, [run])
+    offsets = [start["arm_angle"] for start in starts_of(nominal, "sensor_offset", dataset)]
+    assert max(offsets) == nominal.known["sensor_offset"].parameters["arm_angle"].high
+    for start in starts_of(nominal, "sensor_offset", dataset):
+        nominal.with_effect("sensor_offset", **start)

@@ -126,6 +126,19 @@ def test_a_file_counts_once(tmp_path: Path) -> None:
         Recording.read_all([path, tmp_path])
 
 
+def test_a_copy_is_noted(tmp_path: Path) -> None:
+    first, other = save(tmp_path, GOOD), save(tmp_path, GOOD.replace("0.7", "0.8"), "other.csv")
+    copies = [
+        save(tmp_path, text, f"copy {k}.csv")
+        for k, text in enumerate((GOOD, GOOD.replace("[rad]", "[mrad]"), f"# rig: 2\n{GOOD}"))
+    ]
+    notes = [one.notes for one in Recording.read_all([first, other, *copies])]
+    words = f"has every row of '{first.stem}', and counts beside it: is it a copy? leave one out"
+    assert notes == [(), (), (words,), (), (words,)]
+    still = "time [s],current [A],arm_angle [rad]\n0,0,0\n1,0,0\n2,0,0\n"
+    assert all(one.notes == () for one in Recording.read_all([save(tmp_path, still, f"still {k}.csv") for k in range(2)]))
+
+
 def test_other_conditions_become_si(tmp_path: Path) -> None:
     text = "# temperature = 20 degC\n# speed = 60 rpm\n# trial = 3 of 5\n# date = 2017-04-27\n" + GOOD
     conditions = Recording.read(save(tmp_path, text)).conditions

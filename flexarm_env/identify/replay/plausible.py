@@ -11,6 +11,7 @@ from flexarm_env.experiments.stated import check_stated, stated_by, with_stated
 from flexarm_env.identify.replay.build_run import readings_of
 from flexarm_env.identify.replay.readings import share_of
 from flexarm_env.identify.settings import Preparation
+from flexarm_env.parameters import reading_noise
 from flexarm_env.plant.plant import NO_INTERVALS
 from flexarm_env.recordings.recording import Recording
 
@@ -37,8 +38,24 @@ def check_recording(arm: Arm, recording: Recording, numbers: Preparation) -> Non
         word = "sample" if count == 1 else "samples"
         with_readings = f" with a reading of {' or '.join(arm.signals)}" if count < len(recording) else ""
         raise InputError(f"{recording.name} has {count} {word}{with_readings}; at least {numbers.fewest_samples} are needed")
+    check_noise(arm, recording)
     check_steps(recording, numbers)
     check_free_motion(arm, recording, numbers)
+
+
+def check_noise(arm: Arm, recording: Recording) -> None:
+    """Refuse noise of an arm file that is below the rounding of a recording's readings: errors over it are no numbers.
+
+    Raises:
+        InputError: for such noise.
+    """
+    for signal in arm.signals:
+        noise, largest = reading_noise(arm.sensors[signal]), float(np.nanmax(np.abs(recording.signals[signal])))
+        if 0.0 < noise < np.finfo(np.float64).eps * largest:
+            raise InputError(
+                f"sensors.{signal}.noise = {noise:g} is below the rounding of readings in {recording.name}, "
+                f'which reach {largest:g}; write that of the sensor, or noise = "auto"'
+            )
 
 
 def check_steps(recording: Recording, numbers: Preparation) -> None:

@@ -32,7 +32,8 @@ def starts_of(arm: Arm, effect: str, dataset: Dataset) -> list[dict[str, float]]
     known = arm.known[effect]
     if known.per_sensor:
         noise = dict(zip(dataset.signals, dataset.noise, strict=True))
-        sensors = [{key: (float(noise[key]) if key == signal else 0.0) for key in known.parameters} for signal in noise]
+        sizes = {signal: min(float(deviation), known.parameters[signal].high) for signal, deviation in noise.items()}
+        sensors = [{key: (sizes[key] if key == signal else 0.0) for key in known.parameters} for signal in sizes]
         return [start for _ in known.starts() for start in sensors]
     return [_scaled(arm, effect, start, dataset) for start in known.starts()]
 

@@ -42,6 +42,13 @@ class Preparation:
     fewest_samples: int = tuned(50, "Shortest recording.", unit="samples")
     shortest: float = tuned(1.0, "Recordings that are shorter together are insufficient.", unit="s")
     least_motion: float = tuned(8.0, "Motion below this multiple of a signal's noise is insufficient.")
+    motion_readings: int = tuned(
+        3,
+        "Readings in a row of which the mean counts in that.",
+        "`thesis` at rest for 60 s: readings range over 8.6 times the noise, means of three over 4.8; longer means blur more",
+        "samples",
+    )
+    one_command: float = tuned(1e-9, "Share of a command by which it may vary and counts as constant: thinning rounds its mean.")
     at_limit: float = tuned(0.999, "Share of the largest command at which a command counts as at its limit.")
     much_at_limit: float = tuned(0.3, "Share of samples at the limit that is worth a note.")
     fewest_levels: int = tuned(4, "A command with no more levels than this is a square wave, not a saturated one.")
