@@ -160,7 +160,7 @@ def test_next_to_absence_it_moves_next_to_nothing(arm, name):
     runs = [simulate(a, "square", duration=0.5) for a in (without, without.with_effect(name, **small))]
     for signal in arm.signals:
         was, now = (run.signals[signal] for run in runs)
-        assert np.abs(now - was).max() <= 0.02 * np.ptp(was) + 1e-9, signal
+        assert np.abs(now - was).max() <= 0.05 * np.ptp(was) + 1e-9, signal
 
 
 @pytest.mark.parametrize("name", NAMES)
