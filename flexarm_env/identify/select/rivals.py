@@ -64,10 +64,25 @@ def find_rivals(
     left = min(measure(m.score) for m in better)
     most = left + criteria.equivalent_difference(removed, left)
     ranked = sorted([m for m in better if measure(m.score) <= most], key=rank)
-    simplest = _simplest(ranked, calibrator.settings.errors.converged)
+    best = next(pair for pair in zip(first, again, strict=True) if ranked[0] in pair)
+    simplest = _simplest(ranked, max(calibrator.settings.errors.converged, spread(*best)))
     return Rivals((simplest, *(m for m in ranked if m is not simplest)), measure, tuple(better))
 
 
-def _simplest(ranked: Sequence[Model], converged: float) -> Model:
-    """Choose the simplest of the models whose errors differ from the first one's by less than calibrations leave."""
-    return min((m for m in ranked if m.error_over(ranked[0]) <= converged), key=lambda m: len(m.calibration.parameters))
+def spread(one: Model, other: Model) -> float:
+    """Compute the ratio of the errors of two calibrations of one model, the larger one over the smaller one.
+
+    Where errors are rough, calibrations end in different minima. Models whose errors differ by less are equally good.
+    """
+    return max(one.error_over(other), other.error_over(one))
+
+
+def is_simpler_and_as_good(model: Model, other: Model, most: float) -> bool:
+    """Whether a model has fewer numbers than another, and an error that is larger by a ratio of no more than `most`."""
+    return len(model.calibration.parameters) < len(other.calibration.parameters) and model.error_over(other) <= most
+
+
+def _simplest(ranked: Sequence[Model], most: float) -> Model:
+    """Choose the simplest of the models that are as good as the first one."""
+    every = [ranked[0], *(m for m in ranked if is_simpler_and_as_good(m, ranked[0], most))]
+    return min(every, key=lambda m: len(m.calibration.parameters))

@@ -9,6 +9,7 @@ from flexarm_env.identify.progress import Progress
 from flexarm_env.identify.select.criteria import Criteria
 from flexarm_env.identify.select.fits import fit_in_place
 from flexarm_env.identify.select.model import Model, judge
+from flexarm_env.identify.select.rivals import is_simpler_and_as_good, spread
 from flexarm_env.identify.select.starts import rivals_of
 
 
@@ -53,7 +54,9 @@ def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now:
     rivals.sort(key=rank)
     rivals[0] = _polish_near(calibrator, rivals[0], now)
     first = rivals[0]
-    better = criteria.replaces(*_on_all_data(calibrator, first, now), rank)
+    rival, own, alike_to = _on_all_data(calibrator, first, now)
+    better = criteria.replaces(rival, own, rank) and not is_simpler_and_as_good(own, rival, alike_to)
+    better = better or is_simpler_and_as_good(rival, own, alike_to)
     if replace(now, effects=(effect,)).at_bound:  # no size of it explains the data
         better = better or measure(first.score) <= criteria.equivalence_level(now.score, measure)
     every = {effect: now} | {m.effects[0]: m for m in rivals}
@@ -63,17 +66,23 @@ def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now:
     return RivalComparison(taken, every[taken], alike, frozenset(every), untried)
 
 
-def _on_all_data(calibrator: Calibrator, rival: Model, now: Model) -> tuple[Model, Model]:
+def _on_all_data(calibrator: Calibrator, rival: Model, now: Model) -> tuple[Model, Model, float]:
     """Calibrate both models on all of the data where both are close to the noise, as the criterion that ranks them there assumes.
 
-    What was held out may hold the motion that tells them apart; without it, the right one may only be the less certain one.
+    What was held out may hold the motion that tells them apart; without it, the right one may only be the less certain one. Where
+    errors are rough, that calibration may end worse than the one before it: the better of both stands for a model.
+
+    Returns:
+        Rival, model, and the ratio of errors up to which they are equally good.
     """
+    converged = calibrator.settings.errors.converged
     if max(rival.score.windows, now.score.windows) >= calibrator.settings.errors.close:
-        return rival, now
+        return rival, now, converged
     with calibrator.workers.threads():
         again = [calibrator.calibrate_on_all_data(model.calibration) for model in (rival, now)]
-    one, other = (judge(m.effects, found, calibrator.dataset) for m, found in zip((rival, now), again, strict=True))
-    return one, other
+    found = [judge(m.effects, calibration, calibrator.dataset) for m, calibration in zip((rival, now), again, strict=True)]
+    one, other = (min(pair, key=lambda m: m.bic(calibrator.dataset)) for pair in zip((rival, now), found, strict=True))
+    return one, other, max(converged, spread(now, found[1]))
 
 
 def _polish_near(calibrator: Calibrator, rival: Model, now: Model) -> Model:
