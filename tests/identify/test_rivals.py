@@ -1,0 +1,55 @@
+"""Of models that the recordings do not tell apart, the simplest is named; how far apart that is, is measured by calibrating twice."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+
+from flexarm_env.identify.replay.error_measure import Score
+from flexarm_env.identify.select import rivals
+from flexarm_env.identify.select.criteria import ThresholdCriteria
+from flexarm_env.identify.select.model import Model
+from flexarm_env.identify.settings import Settings
+
+NUMBERS = {"cable_stiffness": 2, "end_stop": 4}
+
+
+def model(effect: str, error: float) -> Model:
+    score = Score(error, error)
+    return Model((effect,), SimpleNamespace(arm=None, parameters=range(NUMBERS[effect])), score, score)
+
+
+def named(monkeypatch: pytest.MonkeyPatch, first: dict[str, float], again: dict[str, float]) -> tuple[str, ...]:
+    """The effects that the recordings do not tell apart, by the errors of their first calibrations and of their second ones."""
+    monkeypatch.setattr(rivals, "fit_models", lambda *_, **__: [model(name, error) for name, error in again.items()])
+    settings = Settings()
+    before = model("cable_stiffness", 14.0)
+    criteria = ThresholdCriteria(before.score, before.score, True, settings)
+    calibrator = SimpleNamespace(
+        dataset=SimpleNamespace(readings=lambda held_out: 30_000), settings=settings, nominal_with_effects_of=lambda arm: arm
+    )
+    models = [model(name, error) for name, error in first.items()]
+    winner = min(models, key=lambda m: m.score.windows)
+    found = rivals.find_rivals(calibrator, criteria, before, winner, models, lambda score: score.excess)
+    return tuple(m.effects[0] for m in found.models)
+
+
+def test_where_calibrations_end_in_different_minima_the_simplest_of_near_rivals_is_named(monkeypatch) -> None:
+    found = named(monkeypatch, {"cable_stiffness": 1.026, "end_stop": 1.010}, {"cable_stiffness": 1.058, "end_stop": 1.035})
+    assert found == ("cable_stiffness", "end_stop")
+
+
+def test_where_calibrations_agree_the_best_is_named_first(monkeypatch) -> None:
+    errors = {"cable_stiffness": 1.026, "end_stop": 1.010}
+    assert named(monkeypatch, errors, {name: 1.0005 * error for name, error in errors.items()}) == ("end_stop", "cable_stiffness")
+
+
+def test_a_simple_model_that_leaves_more_than_calibrations_differ_by_is_not_named_first(monkeypatch) -> None:
+    found = named(monkeypatch, {"cable_stiffness": 1.05, "end_stop": 1.00}, {"cable_stiffness": 1.06, "end_stop": 1.02})
+    assert found[0] == "end_stop"
+
+
+def test_the_simplest_of_equals_is_named_though_calibrations_agree(monkeypatch) -> None:
+    errors = {"cable_stiffness": 1.0015, "end_stop": 1.000}
+    assert named(monkeypatch, errors, errors) == ("cable_stiffness", "end_stop")
