@@ -193,6 +193,9 @@ def test_its_law_is_its_equation(name, port):
         assert law(**given) == pytest.approx(expected, rel=1e-12, abs=1e-12), given
 
 
+EDITING = [name for name in catalogue() if catalogue()[name].port("structure")]
+
+
 def quantities(structure: Structure) -> dict[str, Any]:
     """All quantities of an arm, with those of its sensors."""
     own = {key: value for key, value in vars(structure).items() if key != "sensors"}
@@ -200,17 +203,36 @@ def quantities(structure: Structure) -> dict[str, Any]:
     return own | dict(of_sensors)
 
 
-@pytest.mark.parametrize("name", [name for name in catalogue() if catalogue()[name].port("structure")])
+def all_of(number: int) -> Structure:
+    """An arm of which all quantities are one number."""
+    arm = Structure(**{key: number for key in inspect.signature(Structure).parameters if key != "sensors"})
+    for signal, sensor in known_sensors().items():
+        arm.sensors[signal] = Channel(attrgetter(signal), sensor.strain, number, number, number, number)
+    return arm
+
+
+@pytest.mark.parametrize("name", EDITING)
 def test_it_changes_its_quantities_alone(name):
     for values, changes in CHANGES[name]:
-        arm = Structure(**{key: 3 for key in inspect.signature(Structure).parameters if key != "sensors"})
-        for signal, sensor in known_sensors().items():
-            arm.sensors[signal] = Channel(
-                attrgetter(signal), strain=sensor.strain, gain=3.0, offset=3.0, filter=3.0, position=3.0
-            )
+        arm = all_of(3)
         before = quantities(arm)
         catalogue()[name].port("structure")(arm, **values)
         assert {key: value for key, value in quantities(arm).items() if value != before[key]} == changes
+
+
+@pytest.mark.parametrize("number", [0, 3])
+@pytest.mark.parametrize("name", sorted({*EDITING} - {"fixture_compliance"}))
+def test_at_its_null_it_changes_nothing(name, number):
+    arm = all_of(number)
+    before = quantities(arm)
+    catalogue()[name].port("structure")(arm, **catalogue()[name].null_values())
+    assert quantities(arm) == before
+
+
+def test_at_its_null_a_fixture_is_rigid():
+    arm = all_of(3)
+    catalogue()["fixture_compliance"].port("structure")(arm, **catalogue()["fixture_compliance"].null_values())
+    assert arm.fixture_compliance == 0.0
 
 
 @pytest.mark.parametrize("name", catalogue())
