@@ -239,6 +239,10 @@ def test_at_its_null_a_fixture_is_rigid():
 def test_a_size_is_not_negative(name):
     for key, parameter in catalogue()[name].parameters.items():
         assert (parameter.low < 0.0) == (f"{name}.{key}" in WITH_A_SIDE), key
+        if parameter.low < 0.0 and parameter.unit:  # a machine mounted the other way round
+            assert parameter.low == -parameter.high, key
+        if parameter.unit == "rad" and f"{name}.{key}" in WITH_A_SIDE:
+            assert parameter.high >= 2.0 * math.pi, key
 
 
 def test_a_negative_size_is_refused():

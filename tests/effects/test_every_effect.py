@@ -116,6 +116,7 @@ def test_its_parameters_are_whole(name):
         assert p.low <= p.typical <= p.high, key
         assert math.isfinite(p.typical), key
         assert p.null is None or p.low <= p.null <= p.high, key
+        assert p.spread >= 0.0, key
     assert any(p.null is not None for p in effect.parameters.values()), "no value means absence"
     for start in effect.starts():
         assert set(start) == set(effect.parameters)
@@ -214,6 +215,19 @@ def test_friction_dissipates(arm, name):
         levels.append(energy_with_gears(plant, structure))
     assert levels[0] > 0.01
     assert np.diff(levels).max() <= 1e-9 * levels[0]
+
+
+@pytest.mark.parametrize("name", FRICTION)
+def test_it_says_whether_its_friction_changes_while_the_hub_turns_one_way(name):
+    effect = catalogue()[name]
+    law = effect.port("friction")
+    values = sized(effect, 1.0) | {"direction": 1.0, "at_rest": False}
+    others = [key for key in inspect.signature(law).parameters if key not in values]
+    points = itertools.product(*(GRID[quantity] for quantity in others))
+    frictions = {
+        law(**{k: (values | dict(zip(others, p, strict=True)))[k] for k in inspect.signature(law).parameters}) for p in points
+    }
+    assert effect.varies == (len(frictions) > 1)
 
 
 @pytest.mark.parametrize("name", NAMES)
