@@ -294,6 +294,44 @@ def test_an_effect_of_one_s_own_is_composed_where_it_is_unpickled(tmp_path):
     assert "return -stiffness * angle**3" in made.stdout
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('    equation = "T = -k angle**3"\n', "", "effect Spring lacks 'equation'"),
+        ('    looks_like = "it pulls back, the more the further"\n', "", "effect Spring lacks 'looks_like'"),
+        ('    parameters = {"stiffness": torque_size("k", 0.1)}\n', "", "effect Spring lacks 'parameters'"),
+        ('{"stiffness": torque_size("k", 0.1)}', '[("stiffness", 0.1)]', r"parameters is \[.*; give a dict"),
+        ("def torque", "def force", "effect Spring has no port: give it one of structure, friction"),
+        ("(angle, stiffness)", "(structure, stiffness)", "torque takes 'structure'"),
+        (
+            "def torque(angle, stiffness)",
+            "def structure(structure, stifness)",
+            "structure takes 'stifness'; did you mean 'stiffness'",
+        ),
+        ("    @staticmethod\n", "    @classmethod\n", "torque is no function of its own; write it with @staticmethod"),
+        ("return -stiffness", "return return", "does not load: SyntaxError"),
+    ],
+)
+def test_an_effect_of_one_s_own_that_is_not_whole_is_refused(tmp_path, old, new, words):
+    assert old in OWN
+    file = tmp_path / "mine.py"
+    file.write_text(OWN.replace(old, new))
+    with pytest.raises(InputError, match=words):
+        load_effect(f"{file}:Spring")
+
+
+def test_an_effect_in_a_file_that_is_no_program_is_refused(tmp_path):
+    file = tmp_path / "mine.txt"
+    file.write_text(OWN)
+    for spec, words in (
+        (f"{file}:Spring", "is no Python file"),
+        (f"{tmp_path}:Spring", "no effect in"),
+        (str(file), "no effect in"),
+    ):
+        with pytest.raises(InputError, match=words):
+            load_effect(spec)
+
+
 def test_a_phase_that_is_no_parameter_is_refused(tmp_path):
     file = tmp_path / "mine.py"
     file.write_text(OWN.replace("    looks_like", '    scan_phase = "stifness"\n    looks_like'))
