@@ -116,6 +116,7 @@ def test_its_parameters_are_whole(name):
         assert p.low <= p.typical <= p.high, key
         assert math.isfinite(p.typical), key
         assert p.null is None or p.low <= p.null <= p.high, key
+        assert p.spread >= 0.0, key
     assert any(p.null is not None for p in effect.parameters.values()), "no value means absence"
     for start in effect.starts():
         assert set(start) == set(effect.parameters)
@@ -216,6 +217,19 @@ def test_friction_dissipates(arm, name):
     assert np.diff(levels).max() <= 1e-9 * levels[0]
 
 
+@pytest.mark.parametrize("name", FRICTION)
+def test_it_says_whether_its_friction_changes_while_the_hub_turns_one_way(name):
+    effect = catalogue()[name]
+    law = effect.port("friction")
+    values = sized(effect, 1.0) | {"direction": 1.0, "at_rest": False}
+    others = [key for key in inspect.signature(law).parameters if key not in values]
+    points = itertools.product(*(GRID[quantity] for quantity in others))
+    frictions = {
+        law(**{k: (values | dict(zip(others, p, strict=True)))[k] for k in inspect.signature(law).parameters}) for p in points
+    }
+    assert effect.varies == (len(frictions) > 1)
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_a_misspelt_name_gets_a_hint(arm, name):
     wrong = name[:-2] + name[-1]
@@ -278,6 +292,44 @@ def test_an_effect_of_one_s_own_is_composed_where_it_is_unpickled(tmp_path):
     )
     made = subprocess.run([sys.executable, "-c", program, str(pickled)], capture_output=True, text=True, check=True)
     assert "return -stiffness * angle**3" in made.stdout
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('    equation = "T = -k angle**3"\n', "", "effect Spring lacks 'equation'"),
+        ('    looks_like = "it pulls back, the more the further"\n', "", "effect Spring lacks 'looks_like'"),
+        ('    parameters = {"stiffness": torque_size("k", 0.1)}\n', "", "effect Spring lacks 'parameters'"),
+        ('{"stiffness": torque_size("k", 0.1)}', '[("stiffness", 0.1)]', r"parameters is \[.*; give a dict"),
+        ("def torque", "def force", "effect Spring has no port: give it one of structure, friction"),
+        ("(angle, stiffness)", "(structure, stiffness)", "torque takes 'structure'"),
+        (
+            "def torque(angle, stiffness)",
+            "def structure(structure, stifness)",
+            "structure takes 'stifness'; did you mean 'stiffness'",
+        ),
+        ("    @staticmethod\n", "    @classmethod\n", "torque is no function of its own; write it with @staticmethod"),
+        ("return -stiffness", "return return", "does not load: SyntaxError"),
+    ],
+)
+def test_an_effect_of_one_s_own_that_is_not_whole_is_refused(tmp_path, old, new, words):
+    assert old in OWN
+    file = tmp_path / "mine.py"
+    file.write_text(OWN.replace(old, new))
+    with pytest.raises(InputError, match=words):
+        load_effect(f"{file}:Spring")
+
+
+def test_an_effect_in_a_file_that_is_no_program_is_refused(tmp_path):
+    file = tmp_path / "mine.txt"
+    file.write_text(OWN)
+    for spec, words in (
+        (f"{file}:Spring", "is no Python file"),
+        (f"{tmp_path}:Spring", "no effect in"),
+        (str(file), "no effect in"),
+    ):
+        with pytest.raises(InputError, match=words):
+            load_effect(spec)
 
 
 def test_a_phase_that_is_no_parameter_is_refused(tmp_path):

@@ -219,3 +219,9 @@ def test_a_file_with_empty_cells_is_compared_as_the_recording_is(arm, run, tmp_p
     recording.write(tmp_path / "square.csv")
     again = Recording.read(tmp_path / "square.csv")
     assert compare(arm, [again]).error == compare(arm, [recording]).error
+
+
+@pytest.mark.parametrize(("first", "words"), [(0.001, "1 sample"), (0.003, "2 samples")])
+def test_one_sample_is_not_samples(arm, run, first, words):
+    with pytest.raises(InputError, match=f"square has {words} with a reading of"):
+        prepare(arm, [ignored(run, ALL, first, 9.0)])

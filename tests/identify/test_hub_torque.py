@@ -96,6 +96,39 @@ def test_every_effect_on_the_hub_has_a_driver_and_a_law(arm, name):
         assert np.allclose(against, torque if directed else -torque)
 
 
+@pytest.mark.parametrize(
+    ("name", "values", "angle", "speed", "torque"),
+    [
+        ("viscous", {"coefficient": 0.1}, 0.0, 2.0, -0.2),
+        ("viscous", {"coefficient": 0.1}, 0.0, -2.0, 0.2),
+        ("coulomb", {"torque": 0.3}, 0.0, 2.0, -0.3),
+        ("coulomb", {"torque": 0.3}, 0.0, -2.0, 0.3),
+        ("stiction", {"extra": 0.3}, 0.0, -2.0, 0.0),
+        ("stribeck", {"extra": 2.0, "falloff_speed": 0.5}, 0.0, -0.5, 2.0 / np.e),
+        ("asymmetric_coulomb", {"torque": 0.2}, 0.0, 2.0, -0.2),
+        ("asymmetric_coulomb", {"torque": 0.2}, 0.0, -2.0, -0.2),
+        ("asymmetric_viscous", {"coefficient": 0.2}, 0.0, -2.0, -0.4),
+        ("position_friction", {"amplitude": 2.0, "cycles": 3.0, "phase": 0.0}, np.pi / 6, -1.0, 2.0),
+        ("cable_stiffness", {"stiffness": 0.5, "rest_angle": 0.2}, 1.0, 1.0, -0.4),
+        ("constant_torque", {"torque": -0.05}, 1.0, 1.0, -0.05),
+        ("base_tilt", {"torque": 2.0, "uphill": 0.0}, np.pi / 6, -1.0, 1.0),
+        ("cogging", {"amplitude": 2.0, "cycles": 3.0, "phase": 0.0}, np.pi / 6, -1.0, 2.0),
+        ("end_stop", {"stiffness": 10.0, "upper": 1.0, "lower": -1.0, "damping_time": 0.1}, 1.5, 1.0, -6.0),
+        ("end_stop", {"stiffness": 10.0, "upper": 1.0, "lower": -1.0, "damping_time": 0.1}, 1.5, -1.0, -4.0),
+    ],
+)
+def test_the_torque_of_a_law_by_hand(arm, name, values, angle, speed, torque):
+    found = law_torque(arm.with_effect(name, **values), [name], *np.array([[angle], [speed], [3.0]]))
+    assert found == pytest.approx([torque], abs=1e-12)
+
+
+def test_warming_friction_is_a_share_of_all_dry_friction(arm):
+    warm = arm.with_effect("coulomb", torque=0.3).with_effect("friction_warmup", share=0.4, time_constant=10.0)
+    points = np.array([0.0, 0.0]), np.array([2.0, -2.0]), np.full(2, 10.0 * np.log(2.0))  # half of the share is lost
+    assert law_torque(warm, ["friction_warmup"], *points) == pytest.approx([0.06, -0.06])
+    assert law_torque(warm, ["coulomb", "friction_warmup"], *points) == pytest.approx([-0.24, 0.24])
+
+
 def test_a_machine_of_a_few_grams_has_a_smoother():
     small = case(4, 27)  # its states differ by so many decades that an ordered Schur form does not exist
     motions = hub_torque(small.arm, small.recordings)

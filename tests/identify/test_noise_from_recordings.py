@@ -11,7 +11,10 @@ from flexarm_env import Arm, InputError, Recording, compare, fit, inspect_record
 from flexarm_env.controllers.estimator import Estimator
 from flexarm_env.env.setup import Setup
 from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.replay.reading_noise import SensorNoise
+from flexarm_env.identify.settings import SETTINGS
 from flexarm_env.parameters import reading_noise
+from flexarm_env.recordings.noise import Noise
 from flexarm_env.tasks.slew import SLEW
 
 AUTO = """
@@ -209,3 +212,24 @@ def test_environments_and_controllers_require_a_number(tmp_path):
         Setup(SLEW, arm)
     with pytest.raises(InputError, match='noise = "auto" for arm_angle'):
         Estimator(arm, 0.005)
+
+
+NUMBERS = SETTINGS.preparation
+
+
+@pytest.mark.parametrize(
+    ("stated", "shown", "span", "rounding", "deviation"),
+    [
+        (0.5, 0.1, 3.0, 2.0, 0.5),  # what the arm file states counts
+        (0.0, 0.1, 3.0, 0.0, 0.1),
+        (0.0, 0.1, 3.0, 0.2, 0.2),
+        (0.0, 1e-300, 3.0, 0.0, 3.0 * NUMBERS.least_noise_share),
+        (0.0, None, 3.0, 0.0, 3.0 * NUMBERS.default_noise),
+        (0.0, None, 3.0, 1.0, 1.0),
+        (0.0, None, 0.0, 0.0, NUMBERS.least_noise),
+        (0.0, 1e-300, 0.0, 0.0, NUMBERS.least_noise),
+    ],
+)
+def test_the_noise_of_a_reading_by_its_source(stated, shown, span, rounding, deviation):
+    found = None if shown is None else Noise(shown, 0.0, None, None, shown)
+    assert SensorNoise("arm_angle", stated, found, span, rounding).deviation(NUMBERS) == pytest.approx(deviation, rel=1e-12)

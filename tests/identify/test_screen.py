@@ -13,7 +13,7 @@ from flexarm_env.effects import Effect
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.replay.scales import torque_scale
 from flexarm_env.identify.select.signatures import Baseline, baseline, baselines, signatures
-from flexarm_env.identify.select.starts import first_start, sized
+from flexarm_env.identify.select.starts import first_start, sized, starts_of
 from flexarm_env.identify.settings import SETTINGS
 from flexarm_env.parameters import Parameter
 
@@ -89,7 +89,7 @@ class Shaped(Effect):
 
     @classmethod
     def starts(cls) -> list[dict[str, float]]:
-        return [{"start": 0.3}]
+        return [{"start": 0.3}, {"start": 0.4}, {"start": 3.0}]
 
 
 def test_a_start_that_leaves_values_out_has_typical_ones(arm):
@@ -98,3 +98,20 @@ def test_a_start_that_leaves_values_out_has_typical_ones(arm):
     start = first_start(known, "shaped", replace(data, scales={}))
     assert start == {"stiffness": 0.1, "start": 0.3}
     assert sized(known, "shaped", start, 0.5) == {"stiffness": 0.05, "start": 0.3}
+    shapes = [start["start"] for start in starts_of(known, "shaped", replace(data, scales={"rad": 2.0}))]
+    assert shapes == [0.6, 0.8, 1.0]  # in the scale of the data, within the bounds
+
+
+@pytest.mark.parametrize(
+    ("name", "start", "factor", "larger"),
+    [
+        ("coulomb", {"torque": 0.1}, 3.0, {"torque": pytest.approx(0.3)}),
+        ("load_friction", {"coefficient": 0.5}, 10.0, {"coefficient": 0.95}),
+        ("constant_torque", {"torque": 0.1}, -2.0, {"torque": -0.2}),
+        ("saturation", {"limit": 3.0}, 2.0, {"limit": 1.5}),  # absent at infinity
+        ("gear_compliance", {"stiffness": 200.0, "damping_time": 1e-3}, 4.0, {"stiffness": 50.0, "damping_time": 1e-3}),
+        ("stribeck", {"extra": 0.2, "falloff_speed": 0.3}, 0.5, {"extra": 0.1, "falloff_speed": 0.3}),
+    ],
+)
+def test_an_effect_so_many_times_larger(arm, name, start, factor, larger):
+    assert sized(arm, name, start, factor) == larger

@@ -116,6 +116,13 @@ def test_constants_and_error_agree_with_those_of_all_samples(sweep):
         assert one.low <= other.value <= one.high, one.path
 
 
+@pytest.mark.parametrize("samples", [999, 1000, 1499])
+def test_a_short_recording_keeps_enough_samples(sweep, samples):
+    (run,) = prepare(rigid(), [sweep.part(0.0, (samples - 0.5) * sweep.sample_time)])[1].runs
+    assert len(run.time) >= SETTINGS.thinning.fewest_samples
+    assert (len(run.time) < samples) == (samples >= 2 * SETTINGS.thinning.fewest_samples)
+
+
 def test_break_away_within_a_step_keeps_samples():
     time = np.arange(0.0, 6.0, 0.001)
     runs = []

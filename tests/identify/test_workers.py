@@ -8,9 +8,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from processes import LISTED, descendants, is_alive, wait_for
 
 import flexarm_env
+from flexarm_env import InputError
+from flexarm_env.identify.workers import Workers
 
 PROGRAM = """
 import os, sys, time
@@ -41,3 +44,9 @@ def test_a_killed_process_leaves_no_worker_and_no_shared_memory(tmp_path):
     wait_for(lambda: not any(map(is_alive, helpers)), PATIENCE)
     assert not [helper for helper in helpers if is_alive(helper)]
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("jobs", [0, -1, True, 1.0, "2", None])
+def test_workers_are_a_whole_number(jobs):
+    with pytest.raises(InputError, match=r"jobs is .*; give a whole number from 1 up"):
+        Workers(jobs)

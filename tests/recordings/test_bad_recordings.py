@@ -157,6 +157,14 @@ def test_too_large_a_file_is_not_read(tmp_path: Path) -> None:
     assert "256 MB" in message
 
 
+def test_a_file_of_the_largest_size_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = save(tmp_path, GOOD)
+    monkeypatch.setattr("flexarm_env.recordings.files.LARGEST_FILE", len(GOOD))
+    assert len(Recording.read(path)) == 3
+    monkeypatch.setattr("flexarm_env.recordings.files.LARGEST_FILE", len(GOOD) - 1)
+    assert "the limit is" in refusal(path)
+
+
 def test_control_characters_do_not_break_the_line(tmp_path: Path) -> None:
     path = save(tmp_path, GOOD.replace("0.6", '"a\x1bb\u2028c"'), "a\nb.csv")
     with pytest.raises(InputError) as caught:

@@ -134,6 +134,12 @@ def test_of_held_readings_the_first_counts(held: np.ndarray, times: int, phase: 
     assert np.array_equal(found, expected, equal_nan=True)
 
 
+@pytest.mark.parametrize("times", [2, 3, 5])
+def test_of_a_reading_that_never_changes_the_first_of_each_beat_counts(times: int) -> None:
+    found = Corrections(repeats=times).apply(np.arange(11), np.full(11, 0.5))
+    assert np.flatnonzero(~np.isnan(found)).tolist() == list(range(0, 11, times))
+
+
 def test_a_held_reading_that_comes_late_counts_from_its_change_and_once() -> None:
     values = np.array([1.0] * 5 + [2.0] * 6 + [3.0] * 4 + [4.0] * 10)
     found = Corrections(repeats=5).apply(np.arange(25), values)

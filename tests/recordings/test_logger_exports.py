@@ -120,6 +120,16 @@ def test_labview_with_times_beside_each_channel(tmp_path: Path) -> None:
         assert "row 14: its channels have the times '0' and '0.004'" in message
 
 
+def test_a_torn_row_of_labview_is_no_row_with_two_times(tmp_path: Path) -> None:
+    channels = LABVIEW.replace("X_Value\tMotor", "X_Value\tSpare\tX_Value\tMotor")
+    rows = "".join(f"{t:g}\t9\t{t:g}\t{u:g}\t{t:g}\t{q:g}\t\n" for t, u, q in ROWS)
+    table = named("column", "X_Value", "Motor", "Encoder")
+    assert is_right(Recording.read(save(tmp_path, channels + rows, "run.lvm"), table))
+    for torn in ("0.06", "0.06\t9", "0.06\t9\t0.06", "0.06\t9\t0.06\t1\t0.06"):
+        message = refusal(save(tmp_path, f"{channels}{rows}{torn}\n", "run.lvm"), columns=table)
+        assert f"row {len(channels.splitlines()) + 7}: has {len(torn.split())} cells where 6 are expected" in message
+
+
 def test_an_arduino_with_a_boot_banner(tmp_path: Path) -> None:
     boot = "ets Jun  8 2016 00:22:57\r\nrst:0x1 (POWERON_RESET),boot:0x13\r\n"
     text = boot + "s;u;q\r\n" + lines(";").replace("\n", "\r\n")

@@ -16,7 +16,7 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from recording_files import refusal, save
 
 from flexarm_env.errors import InputError
-from flexarm_env.recordings.formats.matlab_file import variables
+from flexarm_env.recordings.formats.matlab_file import DamagedError, variables
 from flexarm_env.recordings.formats.matlab_paths import describe_all, find_numbers
 from flexarm_env.recordings.recording import Recording
 
@@ -66,6 +66,18 @@ FORMS: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "rows as MATLAB writes them": ({"ans": ROWS}, entries("ans(1,:)", "ans(2,:)", "ans( 3, : )")),
     "columns": ({"data": ROWS.T}, entries(*({"variable": "data", "index": place} for place in range(3)))),
     "columns as MATLAB writes them": ({"data": ROWS.T}, entries("data(:,1)", "data(:,2)", "data(:,3)")),
+    "all of a matrix, and of a row": (
+        {"t": TIME.reshape(2, 3, order="F"), "u": VOLTS.reshape(3, 2, order="F"), "q": ANGLE},
+        entries("t(:)", "u(:)", "q(:)"),
+    ),
+    "one element of a matrix": (
+        {"T": np.array([[1.0, 0.5], [0.002, 3.0]]), "u": VOLTS, "q": ANGLE},
+        entries("T(2)", "u", "q"),
+    ),
+    "one element by row and column": (
+        {"T": np.array([[1.0, 0.002], [0.5, 3.0]]), "u": VOLTS, "q": ANGLE},
+        entries("T(1,2)", "u", "q"),
+    ),
     "struct": ({"data": {"time": TIME, "u": VOLTS, "q": ANGLE}}, entries("data.time", "data.u", "data.q")),
     "struct in a struct": ({"a": {"b": {"t": TIME, "M": ROWS}}}, entries("a.b.t", "a.b.M(2,:)", {"variable": "a.b.M", "row": 2})),
     "structure with time": (
@@ -112,12 +124,66 @@ def test_floats_of_other_machines_are_refused(tmp_path: Path, machine: int) -> N
     assert ("VAX" if machine < 4 else "Cray") in refusal(save(tmp_path, other, "run.mat"), columns=FORMS["rows"][1])
 
 
+def header_of_4(mopt: int = 0, rows: int = 1, columns: int = 1, imaginary: int = 0, name: bytes = b"u\0") -> bytes:
+    return struct.pack("<5i", mopt, rows, columns, imaginary, len(name)) + name
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (header_of_4(mopt=100), "no header of version 4"),
+        (header_of_4(mopt=60), "no header of version 4"),
+        (struct.pack(">5i", 6000, 1, 1, 0, 2) + b"u\0", "no header of version 4"),
+        (header_of_4(rows=-1), "no header of version 4"),
+        (header_of_4(columns=-1), "no header of version 4"),
+        (header_of_4(rows=-1, columns=-1), "no header of version 4"),
+        (header_of_4(name=b""), "no name"),
+        (header_of_4(name=b"u" * 1001), "no name"),
+        (header_of_4(imaginary=2), "no name"),
+        (header_of_4(imaginary=-1), "no name"),
+        (header_of_4()[:19], "cut off"),
+        (header_of_4() + bytes(7), "cut off"),
+        (header_of_4(imaginary=1) + bytes(15), "cut off"),
+        (header_of_4() + bytes(8) + header_of_4(), "cut off"),
+    ],
+)
+def test_a_damaged_header_of_version_4_is_refused(content: bytes, words: str) -> None:
+    with pytest.raises(DamagedError, match=words):
+        variables(content)
+
+
+@pytest.mark.parametrize(("kind", "code"), [(0, "f8"), (10, "f4"), (20, "i4"), (30, "i2"), (40, "u2"), (50, "u1")])
+@pytest.mark.parametrize("order", ["<", ">"])
+def test_numbers_of_version_4_in_each_type(kind: int, code: str, order: str) -> None:
+    mopt = kind + (1000 if order == ">" else 0)
+    head = struct.pack(f"{order}5i", mopt, 2, 3, 0, 1000) + b"u".ljust(1000, b"\0")
+    numbers = np.arange(6).reshape(2, 3)
+    content = head + numbers.astype(order + code).tobytes(order="F")
+    assert np.array_equal(find_numbers(variables(content * 2), "u"), numbers)
+
+
+@pytest.mark.parametrize(("matrix", "imaginary", "kind"), [(0, 1, "complex numbers"), (1, 0, "text"), (2, 0, "sparse matrix")])
+def test_what_version_4_holds_beside_numbers_is_described(matrix: int, imaginary: int, kind: str) -> None:
+    content = header_of_4(mopt=matrix, imaginary=imaginary) + bytes(8 * (1 + imaginary)) + header_of_4(rows=0, name=b"v\0")
+    found = variables(content + header_of_4(name=b"w\0") + bytes(8))
+    assert describe_all(found) == f"u ({kind} 1×1), v (0×1), w (1×1)"
+    with pytest.raises(InputError, match=f"'u' is {kind} 1×1, not a vector"):
+        find_numbers(found, "u")
+
+
 HELD = {"data": SCOPE, "Ts": 0.002, "Y": cells(ROWS), "ans": ROWS, "note": "rig 7", "z": 1j * VOLTS}
 
 
 @pytest.mark.parametrize(
     ("path", "words"),
     [
+        ("data.signals(1,4).values", ["1×3", "without an element 1,4"]),
+        ("data.signals(2,1).values", ["without an element 2,1"]),
+        ("data.signals(1,1,1).values", ["no path of a variable"]),
+        ("ans(19)", ["no row 19", "1 to 18"]),
+        ("ans(0,:)", ["no row 0", "1 to 3"]),
+        ("ans(:,7)", ["no column 7", "1 to 6"]),
+        ("ans{1}", ["3×6 numbers", "does not fit"]),
         ("data.tim", ["no field 'tim'", "struct with time 6×1, signals struct 1×3, blockName text 1×9"]),
         ("data", ["struct with time 6×1", "not a vector", "data.time"]),
         ("data.signals", ["struct 1×3", "data.signals(1).values"]),

@@ -66,6 +66,8 @@ def lvm(folder: Path, text: str) -> Path:
         FILE.replace("One", "No") + SEGMENT + "\t1\t2.5\tmotor on\n\t2\t3\t\n\t3\t4\n",
         FILE + SEGMENT + ROWS.replace("1.0\t3\t4\n", "") + "\n" + SEGMENT + "1.0\t3\t4\t\n",
         FILE.replace("One", "No") + SEGMENT + "\t1\t2.5\t\n" + SEGMENT.replace("0.5", "0.75") + "\t2\t3\n\t3\t4\n",
+        FILE.replace("One", "No") + SEGMENT + "\t1\t2.5\t\n0.75\t2\t3\t\n1.0\t3\t4\n",  # times that are there are kept
+        FILE.replace("One", "No") + SEGMENT.replace("X_Value\tMotor", "Motor\tX_Value") + "1\t\t2.5\t\n2\t\t3\n3\t\t4\n",
         FILE + "X_Value\tMotor\tEncoder\tComment\n" + ROWS,
         FILE + SEGMENT.replace("\tComment", "") + ROWS.replace("\tmotor on", "").replace("3\t\n", "3\n"),
     ],
@@ -89,7 +91,15 @@ def test_labview_files_are_read(tmp_path: Path, text: str) -> None:
         (FILE + SEGMENT + ROWS + SEGMENT.replace("Encoder", "Gage") + ROWS, [f"row {2 * HIGH - 10}", "other columns than"]),
         (FILE.replace("Tab", "Pipe") + SEGMENT + ROWS, ["Pipe", "Tab, Comma"]),
         (FILE.replace("One", "No") + SEGMENT.replace("Delta_X", "Delta") + "\t1\t2\n", ["neither times nor", "Delta_X"]),
-        (FILE + SEGMENT.replace("Motor", "Moto") + ROWS, ["'voltage'", "no 'Motor' in the header; did you mean 'Moto'"]),
+        (
+            FILE + SEGMENT.replace("Motor", "Moto") + ROWS,
+            [f"row {HIGH}, column 'voltage'", "no 'Motor' in the header; did you mean 'Moto'"],
+        ),
+        (FILE + SEGMENT, [f"no samples after row {HIGH}"]),
+        (
+            FILE.replace("One", "No") + SEGMENT.replace("X_Value\tMotor", "Motor\tX_Value") + "1\t\t2.5\n2\t\t3\n3\n",
+            [f"row {HIGH + 3}: has 1 cells where 3 are expected"],
+        ),
     ],
 )
 def test_labview_files_that_are_refused(tmp_path: Path, text: str, words: list[str]) -> None:

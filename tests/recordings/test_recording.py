@@ -82,6 +82,31 @@ def test_a_calibration_leaves_other_units_alone(tmp_path: Path) -> None:
     assert recording.signals["arm_angle"][0] == 0.5
 
 
+@pytest.mark.parametrize(
+    ("unit", "scale", "radians"),
+    [
+        ("V", 1, 8.0),  # 2 V by a calibration of 4 rad/V
+        ("V", 0.5, 4.0),
+        ("mV", 1000, 8.0),
+        ("V", "3 rad/V", 6.0),
+        ("mV", "3 rad/V", 0.006),
+        ("rad", 0.5, 1.0),
+        ("mrad", 1000, 2.0),
+        ("m", "3 rad/m", 6.0),
+    ],
+)
+def test_a_calibration_is_for_volts_that_no_scale_converts(tmp_path: Path, unit: str, scale: float | str, radians: float) -> None:
+    path = save(tmp_path, "t,i,q\n0,1,2\n1,1,2\n")
+    table = {"time": {"column": "t", "unit": "s"}, "current": {"column": "i", "unit": "A"}}
+    columns = {**table, "arm_angle": {"column": "q", "unit": unit, "scale": scale}}
+    read = Recording.read(path, columns, calibration={"arm_angle": 4.0})
+    assert read.signals["arm_angle"].tolist() == pytest.approx([radians, radians])
+    if unit not in ("V", "mV") or isinstance(scale, str):
+        assert same(Recording.read(path, columns), read)
+    else:
+        assert f"column 'arm_angle' is in {unit}" in refusal(path, columns=columns)
+
+
 @pytest.mark.parametrize("gains", [{"arm_angel": 1.0}, {"arm_angle": 0.0}, {"arm_angle": np.nan}])
 def test_calibration_is_checked(tmp_path: Path, gains: dict[str, float]) -> None:
     with pytest.raises(InputError, match=r"calibration: .*arm_ang"):

@@ -208,7 +208,8 @@ def test_json_in_mcap(tmp_path: Path) -> None:
         for k, stamp in enumerate(STAMPS):
             data = {"t": 0.02 * k, "motor": {"i": k}, "phi": [0.5 * k]}
             for channel in channels:
-                writer.add_message(channel, log_time=stamp, data=json.dumps(data).encode(), publish_time=stamp)
+                late = stamp + k * 1_000_000  # by more each time, so that one clock is not taken for the other
+                writer.add_message(channel, log_time=late, data=json.dumps(data).encode(), publish_time=late)
         writer.finish()
     table = {
         "time": {"variable": "t", "unit": "s"},
@@ -218,6 +219,8 @@ def test_json_in_mcap(tmp_path: Path) -> None:
     recording = Recording.read(tmp_path / "run.mcap", table)
     assert np.allclose(recording.time, TIMES, rtol=0, atol=1e-12)
     assert recording.signals["arm_angle"].tolist() == [0.5 * k for k in range(N)]
+    by_log = Recording.read(tmp_path / "run.mcap", {**table, "time": {"variable": "log_time", "unit": "s"}})
+    assert np.allclose(by_log.time, 1.05 * TIMES, rtol=0, atol=1e-9)
     other = {**table, "current": {"variable": "/other.motor.i", "unit": "A"}}
     assert "topic '/other' is encoded as 'protobuf of jsonschema'" in refusal(tmp_path / "run.mcap", columns=other)
 

@@ -168,13 +168,12 @@ class Smoother:
         count, width = len(run.time), len(self.transition)
         forcing = np.append(linear.response[:, INPUTS.index("command")], 0.0)
         readings = run.measured - linear.offset
-        ahead, filtered = np.zeros((count, width)), np.zeros((count, width))
+        ahead, filtered = np.zeros((count + 1, width)), np.zeros((count, width))
         ahead[0, [linear.states.index(body) for body in ("hub", "motor") if body in linear.states]] = run.start.angle
         ahead[0, : run.start.moving + 1] = run.start.angle
         for k in range(count):
             filtered[k] = ahead[k] + self.gain @ errors_of(readings[k], self.output @ ahead[k])
-            if k + 1 < count:
-                ahead[k + 1] = self.transition @ filtered[k] + forcing * command[k]
+            ahead[k + 1] = self.transition @ filtered[k] + forcing * command[k]
         for k in range(count - 2, -1, -1):
             filtered[k] += self.back @ (filtered[k + 1] - ahead[k + 1])
         end = round(dataset.settings.explaining.settling / dataset.interval)

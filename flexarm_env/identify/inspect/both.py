@@ -11,14 +11,15 @@ from flexarm_env.identify.inspect.report import quantity
 
 def with_common_lines(faults: Sequence[Fault]) -> list[Fault]:
     """Give the wrap and the factor of one signal of one recording the same line, which mends both."""
-    factors = {(one.recording, one.signal): one for one in faults if one.kind == "factor" and one.value and one.hint}
-    wraps = {(one.recording, one.signal): one for one in faults if one.kind == "wrap" and one.value}
+    factors = {
+        (one.recording, one.signal): (one.value, one.hint) for one in faults if one.kind == "factor" and one.value and one.hint
+    }
+    wraps = {(one.recording, one.signal): (one.value, one.unit) for one in faults if one.kind == "wrap" and one.value}
     lines = {}
     for key in set(factors) & set(wraps):
-        factor, wrap = factors[key], wraps[key]
-        modulus = abs((wrap.value or 0.0) / (factor.value or 1.0))
-        entry, _, gain = factor.hint.partition(" }")
-        lines[key] = f'{entry}, wrap = "{quantity(modulus, wrap.unit)}" }}{gain}'
+        (factor, hint), (modulus, unit) = factors[key], wraps[key]
+        entry, _, gain = hint.partition(" }")
+        lines[key] = f'{entry}, wrap = "{quantity(abs(modulus / factor), unit)}" }}{gain}'
     shared = ("factor", "wrap")
     return [
         replace(one, hint=lines[key]) if one.kind in shared and (key := (one.recording, one.signal)) in lines else one

@@ -46,12 +46,11 @@ def _piles_up(values: Floats, series: Series, count: int, numbers: Inspecting) -
 
 
 def _evidence(follow: int, count: int, usual: float) -> float:
-    """Compute the logarithm of the odds that so many readings repeat (Chernoff's bound of a binomial)."""
+    """Compute the logarithm of the odds that so many readings, fewer than all, repeat (Chernoff's bound of a binomial)."""
     share = follow / count
     if share <= usual:
         return 0.0
-    rest = (1 - share) * math.log((1 - share) / (1 - usual)) if share < 1 else 0.0
-    return count * (share * math.log(share / usual) + rest)
+    return count * (share * math.log(share / usual) + (1 - share) * math.log((1 - share) / (1 - usual)))
 
 
 def _is_cut(values: Floats, episodes: np.ndarray, step: float, numbers: Inspecting) -> bool:

@@ -6,11 +6,13 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from flexarm_env import Arm, Recording, simulate
+from flexarm_env.identify.inspect import command_factor
 from flexarm_env.identify.inspect.evidence import gather
 from flexarm_env.identify.inspect.motion import motion_faults
 from flexarm_env.identify.settings import SETTINGS
@@ -323,3 +325,15 @@ def test_effects_between_motor_and_angle_are_no_lag(effect, times):
     machine = arm.with_effect(effect, **size)
     runs = [simulate(machine, name, duration=6.0, seed=2, name=name) for name in ("square", "pulse", "sweep")]
     assert not [one for run in runs for one in motion_faults(arm, [run]) if one.kind == "clock"]
+
+
+@pytest.mark.parametrize("size", [0.02, 0.7, 1.4, 60.0])
+@pytest.mark.parametrize("power", [0.8, 1.0, 1.2])
+@pytest.mark.parametrize("best", [0.985, 1.0, 1.015])
+def test_the_search_for_a_command_s_factor_ends_at_the_best_from_either_side(monkeypatch, size, power, best):
+    """The gain goes with a power of the factor, and what explains most lies near the factor of gain 1, on either side."""
+    monkeypatch.setattr(command_factor, "_middle_gain", lambda factor: (factor / size) ** power)
+    monkeypatch.setattr(command_factor, "_explained", lambda _, factor: -(np.log(factor / (best * size)) ** 2))
+    evidence = SimpleNamespace(numbers=SETTINGS.motion, run=1.0, replayer=SimpleNamespace(free_run=float))
+    found = command_factor._search(evidence)
+    assert np.log(found / size) == pytest.approx(np.log(best), abs=SETTINGS.motion.command_close)
