@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from joblib import Parallel, delayed, parallel_config
 
 import flexarm_env
 from benchmarks.report import machine
@@ -91,11 +90,10 @@ def _ctrl_c_withheld() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def seconds_of(client: Any, workers: int, tasks: Sequence[Task]) -> float:
-    """Time tasks on a cluster [s]."""
+def seconds_of(client: Any, tasks: Sequence[Task]) -> float:
+    """Time tasks on a cluster [s]. Dask is handed them itself: joblib keeps to its own process where a cluster has one worker."""
     began = time.perf_counter()
-    with parallel_config(backend="dask", client=client):
-        Parallel(n_jobs=workers, batch_size=1, pre_dispatch="all")(delayed(function)(*given) for function, given in tasks)
+    client.gather([client.submit(function, *given, pure=False) for function, given in tasks])
     return time.perf_counter() - began
 
 
@@ -107,7 +105,7 @@ def in_turns(clients: dict[int, Any], tasks: Sequence[Task], rounds: int) -> dic
     times: dict[int, list[float]] = {workers: [] for workers in clients}
     for turn in range(rounds):
         for workers in sorted(clients, reverse=bool(turn % 2)):
-            times[workers].append(seconds_of(clients[workers], workers, tasks))
+            times[workers].append(seconds_of(clients[workers], tasks))
     return times
 
 

@@ -62,12 +62,21 @@ class Workers:
             yield from self.spread(takewhile(lambda task: not self.deadline.is_over, tasks), "n_jobs")  # none waits
 
     def spread(self, tasks: Iterable[Task], ahead: str = "2 * n_jobs") -> Iterator[Any]:
-        """Yield the results of tasks in their order, from processes that end with this one.
+        """Yield the results of tasks in their order, from processes that end with this one; for one job, from this process.
+
+        Where an engine is around this one, such as Dask, joblib hands it tasks of any number of jobs. With one job none are: its
+        workers would wait for each other.
 
         Args:
             tasks: functions and their arguments.
             ahead: tasks that may wait in a process, as joblib writes it.
         """
+        if self.jobs == 1:
+            for function, arguments in tasks:
+                with self.threads():
+                    result = function(*arguments)
+                yield result
+            return
         calls = (delayed(function)(*arguments) for function, arguments in tasks)
         watched = {"batch_size": self.batch, "initializer": _end_with, "initargs": (os.getpid(),)}
         with ExitStack() as interrupts:

@@ -33,7 +33,7 @@ class Client:
 def test_clusters_take_turns_and_the_ratio_is_the_median(monkeypatch):
     turns: list[int] = []
     clients = {workers: Client(workers, turns) for workers in (1, 2)}
-    monkeypatch.setattr(scale_out, "seconds_of", lambda client, workers, tasks: client.seconds())
+    monkeypatch.setattr(scale_out, "seconds_of", lambda client, tasks: client.seconds())
     times = scale_out.in_turns(clients, [(print, ())], 3)
     assert turns == [1, 2, 2, 1, 1, 2]
     assert times == {1: [7.0, 6.0, 6.0], 2: [4.0, 3.0, 3.0]}
@@ -45,7 +45,7 @@ def test_a_record_has_the_times_and_the_ratio_of_both_clusters(tmp_path, monkeyp
     turns: list[int] = []
     clients = {workers: Client(workers, turns) for workers in (1, 2)}
     monkeypatch.setattr(scale_out, "clusters", lambda: contextlib.nullcontext(clients))
-    monkeypatch.setattr(scale_out, "seconds_of", lambda client, workers, tasks: client.seconds())
+    monkeypatch.setattr(scale_out, "seconds_of", lambda client, tasks: client.seconds())
     found = scale_out.measure(lambda line: None, count=4, rounds=3, folder=tmp_path)
     record = json.loads((tmp_path / "scale_out.json").read_text())
     assert record["seconds"] == {"1": [7.0, 6.0, 6.0], "2": [4.0, 3.0, 3.0]}

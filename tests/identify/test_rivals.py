@@ -1,4 +1,4 @@
-"""Of models that the recordings do not tell apart, the simplest is named; how far apart that is, is measured by calibrating twice."""
+"""Of models that recordings do not tell apart, the simplest is named; calibrating twice measures how far apart that is."""
 
 from __future__ import annotations
 

@@ -6,9 +6,12 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
+from joblib import parallel_config
+from joblib._parallel_backends import ThreadingBackend
 from processes import LISTED, descendants, is_alive, wait_for
 
 import flexarm_env
@@ -50,3 +53,16 @@ def test_a_killed_process_leaves_no_worker_and_no_shared_memory(tmp_path):
 def test_workers_are_a_whole_number(jobs):
     with pytest.raises(InputError, match=r"jobs is .*; give a whole number from 1 up"):
         Workers(jobs)
+
+
+class Engine(ThreadingBackend):
+    """Like Dask's, it takes tasks for all of its workers, whatever the number of jobs."""
+
+    def effective_n_jobs(self, n_jobs: int) -> int:
+        return 4
+
+
+def test_one_job_is_done_here_though_an_engine_of_several_is_around() -> None:
+    with parallel_config(backend=Engine()):
+        places = list(Workers(1).map([(threading.get_ident, ())] * 8))
+    assert set(places) == {threading.get_ident()}
