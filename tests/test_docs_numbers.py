@@ -213,8 +213,6 @@ class Table:
 
     @property
     def text(self) -> str:
-        if not self.numbers.exists():
-            return "No run is stored yet.\n"
         return self.make(self.numbers.read_text(encoding="utf-8"))
 
 
