@@ -112,6 +112,7 @@ def test_a_point_mass_and_a_difference_that_no_motion_shows_are_taken(inertia, h
 
 
 def test_a_fitted_link_is_read_whatever_share_of_its_moment_is_mass(tmp_path):
-    heavier = replace(pendulum().with_values({"link.mass": 5.0}), fitted={"link.mass": {}})
+    fitted = {"link.mass": {"value": 5.0, "low": 4.9, "high": 5.1, "unit": "kg"}}
+    heavier = replace(pendulum().with_values({"link.mass": 5.0}), fitted=fitted)
     heavier.save(tmp_path / "fitted.toml")
     assert Arm.load(tmp_path / "fitted.toml").value("link.mass") == 5.0

@@ -207,7 +207,7 @@ def test_an_effect_that_cannot_be_added_is_refused(flexarm, identify, runs, tmp_
 @pytest.mark.parametrize(
     ("error", "code", "words"),
     [
-        (InputError("the recordings\nare too short"), 2, "the recordings are too short"),
+        (InputError("the recordings\nare too short"), 2, r"the recordings\nare too short"),
         (KeyboardInterrupt(), 130, "stopped"),
         (OSError(28, "No space left on device", "x.csv"), 2, "No space left"),
         (np.linalg.LinAlgError("Singular matrix"), 2, "fault of the program"),

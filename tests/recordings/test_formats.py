@@ -69,7 +69,7 @@ def npz(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 def test_a_file_and_a_folder_of_a_new_format_are_read(capsys, monkeypatch, npz):
     arm, flexarm, read = npz.parent / "A.toml", Call(capsys), []
     monkeypatch.setitem(vars(flexarm_env), "compare", lambda arm, runs, **_: read.append(runs) or fake_compare(arm, runs))
-    assert flexarm("compare", npz, "--arm", arm) == 0
+    assert flexarm("compare", npz, "--arm", arm) == 0, flexarm.err
     assert flexarm("compare", npz / "two.npz", npz / "one.npz", "--arm", arm) == 0
     (first, second), (third, _) = read
     assert [first.name, second.name, third.name] == ["one", "two", "two"]

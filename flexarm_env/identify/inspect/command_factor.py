@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from flexarm_env.errors import InputError
 from flexarm_env.identify.inspect.agreement import Agreement
 from flexarm_env.identify.inspect.evidence import Evidence
 from flexarm_env.identify.inspect.factor_words import factor_fault
@@ -46,7 +47,11 @@ def _refined(evidence: Evidence, signal: str) -> tuple[float, Agreement]:
         if gain <= 0.0:
             break
         mended = replace(recording, signals={**recording.signals, signal: recording.signals[signal] / gain})
-        now = replayer(evidence.arm, mended, evidence.replayer.dataset.settings).free_run().agreement(signal, signal)
+        try:
+            run = replayer(evidence.arm, mended, evidence.replayer.dataset.settings).free_run()
+        except InputError:  # so large a factor that the arm could not have been recorded
+            break
+        now = run.agreement(signal, signal)
         gain *= now.gain
     return gain, now
 
