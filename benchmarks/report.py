@@ -145,20 +145,22 @@ def about_environments(found: Mapping[str, Any]) -> list[str]:
     return lines
 
 
-def write(path: Path, found: Mapping[str, Any], seconds: float) -> None:
-    """Write all figures and the machine that they were measured on, atomically."""
-    measured = [g for g in GOALS if found.get(g.figure) is not None]
-    goals = {g.figure: {"goal": g.bound(), "met": g.met(found[g.figure])} for g in measured}
-    content = {
-        "command": "python -m benchmarks",
+def origin(command: str) -> dict[str, Any]:
+    """Gather what stands in every record: the command, version and commit, the time and the machine."""
+    return {
+        "command": command,
         "version": flexarm_env.__version__,
         "commit": commit(),
         "date": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
         "machine": machine(),
-        "seconds": seconds,
-        "figures": dict(found),
-        "goals": goals,
     }
+
+
+def write(path: Path, found: Mapping[str, Any], seconds: float) -> None:
+    """Write all figures and the machine that they were measured on, atomically."""
+    measured = [g for g in GOALS if found.get(g.figure) is not None]
+    goals = {g.figure: {"goal": g.bound(), "met": g.met(found[g.figure])} for g in measured}
+    content = origin("python -m benchmarks") | {"seconds": seconds, "figures": dict(found), "goals": goals}
     path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
 

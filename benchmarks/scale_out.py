@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import datetime
 import hashlib
 import json
 import logging
@@ -17,12 +16,10 @@ from typing import Any
 
 import numpy as np
 
-import flexarm_env
-from benchmarks.report import machine
+from benchmarks.report import origin
 from flexarm_env import Arm, Recording, diagnose, simulate
 from flexarm_env.errors import InputError
 from flexarm_env.files import write_whole
-from flexarm_env.terminal.provenance import commit
 
 Task = tuple[Callable[..., Any], tuple[Any, ...]]
 Say = Callable[[str], None]
@@ -131,11 +128,7 @@ def measure(say: Say, count: int = COUNT, rounds: int = ROUNDS, folder: Path = S
         possible = in_turns(clients, [(_hash, (HASHES,))] * count, 2)
     found = {"scale_out": ratio(times), "scale_out_possible": ratio(possible), "scale_out_load": load}
     content = {
-        "command": "python -m benchmarks --scale-out",
-        "version": flexarm_env.__version__,
-        "commit": commit(),
-        "date": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
-        "machine": machine(),
+        **origin("python -m benchmarks --scale-out"),
         "diagnoses": count,
         "rounds": rounds,
         "seconds": {str(workers): [round(one, 3) for one in each] for workers, each in times.items()},
