@@ -88,8 +88,8 @@ class Calibrator:
             A calibrator of the dataset so held out, and its calibration of the constants.
         """
         found = self.calibrate_constants()
-        settled = self._settled_on_all_data(found)
-        if settled is not None:
+        settled = self.settle(found)
+        if settled is not found:
             return self, settled
         later = hold_out_late(found.arm, self.dataset)
         if later is self.dataset:
@@ -97,17 +97,36 @@ class Calibrator:
         calibrator = replace(self, dataset=later)
         return calibrator, calibrator.calibrate_constants()
 
-    def _settled_on_all_data(self, found: Calibration) -> Calibration | None:
-        """Calibrate on all of the data where the fitted part leaves constants uncertain; None where the model is to blame.
+    def settle(self, found: Calibration) -> Calibration:
+        """Calibrate on all of the data where the fitted part leaves constants uncertain; keep it where the model is to blame.
 
         Constants that explain what they were fitted to, and not the rest, may be uncertain. Then some explain both.
         """
         most = self.settings.errors.nothing_left
         if self.score(found.arm).windows <= most or self.score(found.arm, held_out=False).windows > most:
-            return None
+            return found
         again = self.calibrate_on_all_data(found)
-        left = max(self.score(again.arm, held_out).windows for held_out in (False, True))
-        return again if left <= most else None
+        if self._error_on_all_data(again.arm) > most:
+            again = self.calibrate_on_all_data(self._with_undetermined_scanned(found))
+        return again if self._error_on_all_data(again.arm) <= most else found
+
+    def _with_undetermined_scanned(self, found: Calibration) -> Calibration:
+        """Set each constant on which the fitted part does not depend to the value in its prior that leaves least in the rest.
+
+        Where an arm sticks only in the rest, the error of that is a step in the static friction: no slope leads there.
+        """
+        step, most = self.settings.calibrating.scan_step, self.settings.errors.nothing_left
+        x, apply = found.solution.x, found.parameters.apply
+        for along in np.diag([parameter.prior for parameter, _ in found.parameters.pairs(x)]):
+            halfway = [apply(found.arm, x + share * along) for share in (-0.5, 0.5)]
+            if min(self.score(arm, held_out=False).windows for arm in halfway) <= most:
+                values = [x + share * along for share in np.arange(-1.0, 1.0 + step, step)]
+                x = min([x, *values], key=lambda value: self._error_on_all_data(apply(found.arm, value)))
+        return replace(found, arm=apply(found.arm, x), solution=replace(found.solution, x=x))
+
+    def _error_on_all_data(self, arm: Arm) -> float:
+        """Measure the error in windows of the fitted or of the held-out part, the larger one."""
+        return max(self.score(arm, held_out).windows for held_out in (False, True))
 
     def calibrate_by_best_schedule(self, arm: Arm) -> tuple[Calibration, Score]:
         """Calibrate from an arm; also give the errors on the fitted part.

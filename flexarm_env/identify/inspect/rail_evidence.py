@@ -29,9 +29,11 @@ def stands_at(end: int, signal: str, series: dict[str, Series], numbers: Inspect
     if one.flicker > numbers.flickers:
         still = all(other.stands_still(standing, numbers) for other in others)
         near_zero = abs(values.max()) < numbers.near_zero * np.ptp(values)
-        return (repeated or _piles_up(values, one, count, numbers)) and not (still and (bool(others) or near_zero))
-    episodes = starts[at_end & (lengths >= numbers.least_run)]
-    return repeated and _is_cut(values, episodes, one.step, numbers) and not _rests(one, values.max(), standing, others, numbers)
+        if still and (bool(others) or near_zero):
+            return False
+        wide = one.noise > numbers.wide_noise * one.step
+        return repeated or (_piles_up(values, one, count, numbers) and (wide or _is_cut(values, one, numbers)))
+    return repeated and _is_cut(values, one, numbers) and not _rests(one, values.max(), standing, others, numbers)
 
 
 def _piles_up(values: Floats, series: Series, count: int, numbers: Inspecting) -> bool:
@@ -53,11 +55,19 @@ def _evidence(follow: int, count: int, usual: float) -> float:
     return count * (share * math.log(share / usual) + (1 - share) * math.log((1 - share) / (1 - usual)))
 
 
-def _is_cut(values: Floats, episodes: np.ndarray, step: float, numbers: Inspecting) -> bool:
-    """Whether the signal runs into its extreme at a slope, where a motion that ends there comes in slowly."""
-    before = np.maximum(episodes - numbers.least_run, 0)
-    slopes = (values[episodes] - values[before]) / np.maximum(episodes - before, 1)
-    return bool(slopes.size) and float(np.median(slopes)) > numbers.cut_slope * step
+def _is_cut(values: Floats, series: Series, numbers: Inspecting) -> bool:
+    """Whether the signal runs into its extreme at a slope, where a motion that ends there comes in slowly.
+
+    A last digit that flickers at rest leaves the extreme by one step, and does not arrive there anew.
+    """
+    starts, lengths = series.runs()
+    stands = starts[(values[starts] == values.max()) & (lengths >= numbers.least_run)]
+    away = values < values.max() - numbers.more_than_a_step * series.step
+    stays = np.cumsum(away)
+    arrivals = stands[np.r_[True, np.diff(stays[stands]) > 0]] if stands.size else stands
+    before = np.maximum(arrivals - numbers.least_run, 0)
+    slopes = (values[arrivals] - values[before]) / np.maximum(arrivals - before, 1)
+    return bool(slopes.size) and float(np.median(slopes)) > numbers.cut_slope * series.step
 
 
 def _rests(series: Series, level: float, standing: Integers, others: Sequence[Series], numbers: Inspecting) -> bool:

@@ -43,7 +43,7 @@ def fit_model(calibrator: Calibrator, effects: tuple[str, ...], arm: Arm, thorou
     found = calibrator.calibrate(arm)
     if thorough:
         found = calibrator.restart_from_nominal(found)
-    return judge(effects, found, calibrator.dataset)
+    return judge(effects, calibrator.settle(found), calibrator.dataset)
 
 
 def fit_with_all_constants(

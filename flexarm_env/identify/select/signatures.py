@@ -18,6 +18,8 @@ from flexarm_env.identify.select.starts import sized, starts_of
 from flexarm_env.identify.settings import Screening
 
 Floats = NDArray[np.float64]
+#: Values of an effect, and the change (rows,) of the residual that they make and no constant could.
+Change = tuple[dict[str, float], NDArray[np.float64]]
 
 
 @dataclass(frozen=True)
@@ -120,26 +122,52 @@ def signatures(base: Baseline, effect: str) -> list[Signature]:
     """
     numbers = base.numbers
     starts = starts_of(base.arm, effect, base.objective.dataset)
-    secants = [secant for start in starts for secant in _secants(base, effect, start)]
+    changes = [change for start in starts for change in _changes(base, effect, start)]
+    left = base.unexplained(base.residual)
+    secants = [_secant(base, effect, start, change, left) for start, change in changes]
+    secants += _with_phases_between(base, effect, changes, left)
     secants.sort(key=lambda s: -s.explained)
     best = max((_at_its_size(base, s) for s in secants[: numbers.starts_scanned]), key=lambda s: s.explained)
     return [best] if best.explained > numbers.least_explained else []
 
 
-def _secants(base: Baseline, effect: str, start: dict[str, float]) -> list[Signature]:
-    """Extrapolate from a start, and from smaller sizes as long as the change is out of proportion to the residual.
+def _changes(base: Baseline, effect: str, start: dict[str, float]) -> list[Change]:
+    """Try a start, and smaller sizes as long as the change of the residual is out of proportion to the residual.
 
     Where friction holds an arm that moves freely, or a delay exceeds a period, the change says nothing of small sizes.
     """
-    numbers, left = base.numbers, base.unexplained(base.residual)
-    found: list[Signature] = []
+    numbers, target = base.numbers, float(np.linalg.norm(base.unexplained(base.residual)))
+    found: list[Change] = []
     for _ in range(numbers.shrinks):
         change = base.unexplained(base.change(effect, start))
-        found.append(_secant(base, effect, start, change, left))
-        size, target = float(np.linalg.norm(change)), float(np.linalg.norm(left))
+        found.append((start, change))
+        size = float(np.linalg.norm(change))
         if target >= numbers.in_proportion * size or not base.arm.known[effect].fitted:
             break
         start = sized(base.arm, effect, start, target / size)
+    return found
+
+
+def _with_phases_between(base: Baseline, effect: str, changes: Sequence[Change], left: Floats) -> list[Signature]:
+    """Combine the changes of a sine and of the cosine beside it into that of the phase between them which explains most.
+
+    A sine of any phase is a sum of both, and so is its change. By one of them alone, a wrong period may explain more.
+    """
+    phase = base.arm.known[effect].scan_phase
+    if not phase:
+        return []
+    size, total, found = base.arm.known[effect].size_parameter(), float(left @ left), []
+    sines, cosines = ([one for one in changes if (one[0][phase] == 0.0) is wanted] for wanted in (True, False))
+    for sine, of_sine in sines:
+        beside = [one for one in cosines if all(one[0][key] == sine[key] for key in sine if key not in (phase, size))]
+        for cosine, of_cosine in beside[:1]:
+            each = np.column_stack([of_sine / sine[size], of_cosine / cosine[size]])
+            along, across = np.linalg.lstsq(each, -left, rcond=None)[0]
+            after = left + each @ (along, across)
+            start = {**sine, phase: float(np.arctan2(across, along))}
+            factor = float(np.hypot(along, across)) / sine[size]
+            if factor > 0.0:
+                found.append(Signature(effect, start, 1.0 - float(after @ after) / total, factor))
     return found
 
 

@@ -80,6 +80,11 @@ class Calibrating:
         "How often a calibration that stays far off is continued.",
         "one run of CU Boulder's arm ended 6 % off, by rounding; no sweep recorded",
     )
+    scan_step: float = tuned(
+        0.05,
+        "Step at which a constant that the fitted part leaves undetermined is scanned, in its prior's standard deviations.",
+        "of a rigid axis that sticks once, late, the static friction within 4 % meets the rest, and its prior is 50 % wide",
+    )
     memory: float = tuned(
         0.02,
         "Time over which the errors of a model that is far off are correlated.",

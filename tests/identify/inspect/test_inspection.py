@@ -60,6 +60,18 @@ def test_an_encoder_at_rest_at_its_largest_angle_is_no_rail():
     assert inspect_recordings(arm, [run]).faults == ()
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_a_last_digit_that_flickers_at_rest_is_no_rail(seed):
+    """A link that is held at its largest angle, then at its smallest, by an encoder whose noise is a quarter of a step."""
+    time = np.arange(0.0, 8.0, 0.01)
+    angle = 256.7 * np.clip(1.6 * np.sin(np.pi * (time - 0.25) / 4.0) + 0.2 * np.sin(7.0 * time) * (time < 1.0), -1.0, 1.0)
+    slow = np.convolve(angle, np.full(60, 1 / 60), mode="same")  # so that it comes to rest and does not run into an end
+    noisy = slow + 0.25 * np.random.default_rng(seed).standard_normal(len(time))
+    reading = np.round(noisy) * 0.001
+    run = Recording.from_arrays("run", time, "voltage", np.sin(time), {"arm_angle": reading})
+    assert [one for one in inspect_recordings(Arm.load("cu-rigid"), [run]).faults if one.kind == "rail"] == []
+
+
 def test_a_motor_that_only_turns_forward_rests_at_zero_and_not_at_a_rail():
     time = np.arange(0.0, 4.0, 0.002)
     speed = np.round(np.maximum(20.0 * np.sin(2.0 * time), 0.0))

@@ -1,0 +1,59 @@
+"""Constants that the fitted part of recordings leaves undetermined are settled by the rest."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from flexarm_env import Arm, Recording, diagnose, simulate
+from flexarm_env.identify.calibrate.calibrator import Calibrator
+from flexarm_env.identify.replay.dataset import prepare
+
+COULOMB, STICTION = 0.2, 0.08  # [Nm]
+HELD = 0.26  # [Nm], between both models' static friction
+
+
+def axis(stiction: float = STICTION) -> Arm:
+    """Build a rigid axis whose friction is larger at rest."""
+    drive = {"input": "torque", "limit": 4.0, "gear_ratio": 1.0}
+    effects = {"viscous": {"coefficient": 0.05}, "coulomb": {"torque": COULOMB}, "stiction": {"extra": stiction}}
+    sensors = {"arm_angle": {"resolution": 1e-4}, "motor_speed": {"noise": 0.02}}
+    return Arm.from_table({"drive": drive, "hub": {"inertia": 0.02}, "effects": effects, "sensors": sensors}, "axis")
+
+
+def recorded(machine: Arm, last: float = HELD) -> Recording:
+    """Drive an axis for six seconds, so that it hardly rests, and then by one torque [Nm], from rest."""
+    time = np.arange(0.0, 8.0, 0.004)
+    command = 0.8 * np.sign(np.sin(2.0 * np.pi * 1.1 * time)) + 0.3 * np.sin(2.0 * np.pi * 0.37 * time)
+    command[time > 6.0] = 0.0
+    command[time > 6.5] = last
+    asked = Recording.from_arrays("late", time, "torque", command, dict.fromkeys(machine.signals, np.zeros(len(time))))
+    return simulate(machine, asked, seed=4)
+
+
+@pytest.fixture(scope="module")
+def recording() -> Recording:
+    return recorded(axis())
+
+
+def test_static_friction_that_matters_only_in_the_rest_is_scanned(recording):
+    nominal, data = prepare(axis(0.7 * STICTION), [recording])
+    calibrator = Calibrator(nominal, data)
+    found = calibrator.calibrate(nominal)
+    assert calibrator.score(found.arm, held_out=False).windows < 1.1 < 3.0 < calibrator.score(found.arm).windows
+    settled = calibrator.settle(found)
+    assert calibrator.score(settled.arm).windows < 1.1
+    assert settled.arm.value("effects.stiction.extra") > HELD - COULOMB
+    assert calibrator.settle(settled) is settled
+
+
+def test_a_model_that_lacks_an_effect_in_the_rest_is_to_blame():
+    nominal, data = prepare(axis(), [recorded(axis().with_effect("saturation", limit=1.2), last=2.0)])
+    calibrator = Calibrator(nominal, data)
+    found = calibrator.calibrate(nominal)
+    assert calibrator.score(found.arm, held_out=False).windows < 1.1 < 3.0 < calibrator.score(found.arm).windows
+    assert calibrator.settle(found) is found
+
+
+def test_nothing_is_said_to_be_missing(recording):
+    assert diagnose(axis(0.7 * STICTION), [recording], jobs=1).verdict in ("parameters", "nothing_missing")
