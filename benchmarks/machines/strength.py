@@ -26,6 +26,8 @@ Floats = NDArray[np.float64]
 WINDOW, START = 1.0, 0.15
 #: Samples per second that are compared at most [Hz]; share of a prior's standard deviation by which a constant is moved.
 RATE, STEP = 100.0, 0.3
+#: Factor and step [Nm or rad] by which the weight of a link and its direction are moved.
+WEIGHT = {"effects.base_tilt.torque": (1.01, 0.0), "effects.base_tilt.uphill": (1.0, 0.01)}
 #: Relative tolerance of a strength; largest number of trials; weakest size that is tried over the largest.
 NEAR, TRIALS, WEAKEST = 0.15, 12, 1e-6
 
@@ -81,6 +83,17 @@ class Yardstick:
                 window[:, signals.index("motor_speed")] -= motion[:, 1] * ratio
 
     @cached_property
+    def weight(self) -> Floats:
+        """Differences (readings, 2 or 0) by the weight of a link and by its direction, which a fit moves without a prior."""
+        found = []
+        for path, sizes in WEIGHT.items():
+            if path in self.machine.values:
+                value = self.machine.values[path]
+                moved = with_values(self.machine, {path: value * sizes[0] + sizes[1]})
+                found.append(self.difference(moved))
+        return np.stack(found, axis=1) if found else np.zeros((len(self.constants), 0))
+
+    @cached_property
     def constants(self) -> Floats:
         """Differences (readings, constants) by one standard deviation of the prior of each constant that a fit moves."""
         columns = []
@@ -94,8 +107,8 @@ class Yardstick:
         return self.difference(self.machine, (sized.settings(self.machine),), sized.is_sensor)
 
     def left(self, difference: Floats, rivals: Sequence[Floats] = ()) -> float:
-        """Compute the rms of what the constants, within their priors, and rivals of any size cannot make up for."""
-        free = np.stack(rivals, axis=1) if rivals else np.zeros((len(difference), 0))
+        """Compute the rms of what constants within their priors, and weight and rivals of any size, cannot make up for."""
+        free = np.column_stack([self.weight, *rivals])
         columns = np.hstack([self.constants, free])
         priors = np.diag(np.r_[np.ones(self.constants.shape[1]), np.zeros(free.shape[1])])
         moves = np.linalg.lstsq(np.vstack([columns, priors]), np.r_[difference, np.zeros(len(priors))])[0]

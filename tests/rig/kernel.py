@@ -52,7 +52,7 @@ def split(speed: float, force: float, sliding: float, static: float, leaving: fl
 
 @njit(cache=True)
 def drive(s: np.ndarray, p: np.void, command: float) -> float:
-    """Return the motor current [A] for a (delayed) command [A or V]; the amplifier's memory sits in `s`."""
+    """Return the mean motor current [A] over a step for a (delayed) command [A or V]; the amplifier's memory sits in `s`."""
     i = command
     if p.dead > 0.0:
         i = 0.0 if abs(i) <= p.dead else i - math.copysign(p.dead, i)
@@ -66,13 +66,16 @@ def drive(s: np.ndarray, p: np.void, command: float) -> float:
         i -= p.backemf * p.kphi * s[WM] / p.ra
     i = min(max(i, -p.sat), p.sat)
     if p.rate > 0.0:
-        s[RATE] += min(max(i - s[RATE], -p.rate * p.h), p.rate * p.h)
-        i = s[RATE]
+        ahead = i - s[RATE]
+        ramp = min(abs(ahead) / (p.rate * p.h), 1.0)  # share of the step for which the current still rises or falls
+        s[RATE] += math.copysign(ramp * p.rate * p.h, ahead)
+        i = s[RATE] - math.copysign(0.5 * ramp * ramp * p.rate * p.h, ahead)
     if p.volts > 0.0:
         i = (i - p.kphi * s[WM]) / p.ra
     if p.lag > 0.0:
-        s[LAG] += (i - s[LAG]) * (1.0 - math.exp(-p.h / p.lag))
-        i = s[LAG]
+        behind = i - s[LAG]
+        s[LAG] += behind * (1.0 - math.exp(-p.h / p.lag))
+        i -= behind * (p.lag / p.h) * (1.0 - math.exp(-p.h / p.lag))
     return i
 
 

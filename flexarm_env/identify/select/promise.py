@@ -20,7 +20,7 @@ from flexarm_env.identify.calibrate.parameters import FitParameters
 from flexarm_env.identify.replay.density import Prediction, at_torque, best_readings, torque_levels
 from flexarm_env.identify.replay.forecast import FilteredStates, filtered_states
 from flexarm_env.identify.replay.forecast_spread import Leads
-from flexarm_env.identify.select.starts import sized, starts_of
+from flexarm_env.identify.select.starts import changes_in_proportion, sized, starts_of
 from flexarm_env.identify.settings import LEAST_NORM
 
 Floats = NDArray[np.float64]
@@ -135,22 +135,27 @@ def _background(parameters: FitParameters, prediction: Prediction) -> Background
 
 def _promise(backgrounds: Sequence[Background], base: float, effect: str, start: dict[str, float]) -> Promise:
     """Estimate the promise of an effect from one of its starts."""
-    arm = backgrounds[0].prediction.arm
-    numbers = backgrounds[0].prediction.dataset.settings.promising
+    arm, settings = backgrounds[0].prediction.arm, backgrounds[0].prediction.dataset.settings
+    numbers = settings.promising
     best = Promise(effect, start, base, 0.0, backgrounds[0].prediction.disturbances.torque, backgrounds[0].slopes)
     for background in backgrounds:
-        change = background.change(arm.with_effect(effect, **start))
-        power = float(change @ change)
-        if power <= numbers.least_change * float(background.left @ background.left) + LEAST_NORM:
-            continue
-        suits = -float(change @ background.left) / power
-        turned = _turned(arm, effect, start) if suits < 0.0 else None
-        for factor in _factors(arm, effect, suits if turned is None else -suits, numbers.largest_factor):
-            cost = background.cost(background.left + (factor if turned is None else -factor) * change)
-            if cost < best.cost:
-                values = sized(arm, effect, turned or start, factor) if factor != 1.0 else turned or start
-                torque = background.prediction.disturbances.torque
-                best = Promise(effect, values, cost, base - cost, torque, background.slopes)
+        left = float(np.linalg.norm(background.left))
+
+        def change_by(values: dict[str, float], background: Background = background) -> Floats:
+            return background.change(arm.with_effect(effect, **values))
+
+        for begin, change in changes_in_proportion(arm, effect, start, change_by, left, settings.screening):
+            power = float(change @ change)
+            if power <= numbers.least_change * left**2 + LEAST_NORM:
+                continue
+            suits = -float(change @ background.left) / power
+            turned = _turned(arm, effect, begin) if suits < 0.0 else None
+            for factor in _factors(arm, effect, suits if turned is None else -suits, numbers.largest_factor):
+                cost = background.cost(background.left + (factor if turned is None else -factor) * change)
+                if cost < best.cost:
+                    values = sized(arm, effect, turned or begin, factor) if factor != 1.0 else turned or begin
+                    torque = background.prediction.disturbances.torque
+                    best = Promise(effect, values, cost, base - cost, torque, background.slopes)
     return best
 
 

@@ -14,12 +14,10 @@ from flexarm_env.identify.calibrate.least_squares import jacobian
 from flexarm_env.identify.calibrate.objective import Objective, ObserverBank, objective_at
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.scales import torque_scale
-from flexarm_env.identify.select.starts import sized, starts_of
+from flexarm_env.identify.select.starts import Change, changes_in_proportion, sized, starts_of
 from flexarm_env.identify.settings import Screening
 
 Floats = NDArray[np.float64]
-#: Values of an effect, and the change (rows,) of the residual that they make and no constant could.
-Change = tuple[dict[str, float], NDArray[np.float64]]
 
 
 @dataclass(frozen=True)
@@ -121,31 +119,20 @@ def signatures(base: Baseline, effect: str) -> list[Signature]:
     The effect's own starts are ranked by a finite secant. The best are tried at the size that it gives.
     """
     numbers = base.numbers
-    starts = starts_of(base.arm, effect, base.objective.dataset)
-    changes = [change for start in starts for change in _changes(base, effect, start)]
     left = base.unexplained(base.residual)
+    size = float(np.linalg.norm(left))
+
+    def change_by(values: dict[str, float]) -> Floats:
+        return base.unexplained(base.change(effect, values))
+
+    starts = starts_of(base.arm, effect, base.objective.dataset)
+    tried = (changes_in_proportion(base.arm, effect, start, change_by, size, numbers) for start in starts)
+    changes = [change for of_start in tried for change in of_start]
     secants = [_secant(base, effect, start, change, left) for start, change in changes]
     secants += _with_phases_between(base, effect, changes, left)
     secants.sort(key=lambda s: -s.explained)
     best = max((_at_its_size(base, s) for s in secants[: numbers.starts_scanned]), key=lambda s: s.explained)
     return [best] if best.explained > numbers.least_explained else []
-
-
-def _changes(base: Baseline, effect: str, start: dict[str, float]) -> list[Change]:
-    """Try a start, and smaller sizes as long as the change of the residual is out of proportion to the residual.
-
-    Where friction holds an arm that moves freely, or a delay exceeds a period, the change says nothing of small sizes.
-    """
-    numbers, target = base.numbers, float(np.linalg.norm(base.unexplained(base.residual)))
-    found: list[Change] = []
-    for _ in range(numbers.shrinks):
-        change = base.unexplained(base.change(effect, start))
-        found.append((start, change))
-        size = float(np.linalg.norm(change))
-        if target >= numbers.in_proportion * size or not base.arm.known[effect].fitted:
-            break
-        start = sized(base.arm, effect, start, target / size)
-    return found
 
 
 def _with_phases_between(base: Baseline, effect: str, changes: Sequence[Change], left: Floats) -> list[Signature]:

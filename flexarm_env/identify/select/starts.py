@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.replay.dataset import Dataset
+from flexarm_env.identify.settings import Screening
+
+#: Values of an effect, and the change (rows,) of the errors that they make and no constant could.
+Change = tuple[dict[str, float], NDArray[np.float64]]
 
 
 def candidates(arm: Arm) -> list[str]:
@@ -41,6 +48,36 @@ def starts_of(arm: Arm, effect: str, dataset: Dataset) -> list[dict[str, float]]
 def first_start(arm: Arm, effect: str, dataset: Dataset) -> dict[str, float]:
     """Choose the values from which an effect is tried first."""
     return _scaled(arm, effect, arm.known[effect].starts()[0], dataset)
+
+
+def changes_in_proportion(
+    arm: Arm,
+    effect: str,
+    start: dict[str, float],
+    change: Callable[[dict[str, float]], NDArray[np.float64]],
+    left: float,
+    numbers: Screening,
+) -> list[Change]:
+    """Try a start, and smaller sizes as long as the change that it makes is out of proportion to the errors.
+
+    Where friction holds an arm that moves freely, or a delay exceeds a period, the change says nothing of small sizes.
+
+    Args:
+        arm: without the effect.
+        effect: its name.
+        start: its values.
+        change: computes the change (rows,) of the errors by the effect's values.
+        left: Euclidean norm of the errors.
+        numbers: of the screening.
+    """
+    found: list[Change] = []
+    for _ in range(numbers.shrinks):
+        found.append((start, change(start)))
+        size = float(np.linalg.norm(found[-1][1]))
+        if left >= numbers.in_proportion * size or not arm.known[effect].fitted:
+            break
+        start = sized(arm, effect, start, left / size)
+    return found
 
 
 def sized(arm: Arm, effect: str, start: Mapping[str, float], factor: float) -> dict[str, float]:
