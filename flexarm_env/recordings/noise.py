@@ -148,6 +148,8 @@ def _coarse_variance(cut: Sequence[Windows], step: float) -> float:
         return (fast or together(cut).variance()) - step**2 / 12
     shown = float(np.mean(np.minimum(slow.power.mean(axis=1), 0.25 * step**2)))
     highest = COARSE * step
+    if shown <= _shown_variance(0.0, step):
+        return 0.0
     if shown >= _shown_variance(highest, step):
         return highest**2
     return float(brentq(lambda s: _shown_variance(s, step) - shown, 0.0, highest)) ** 2

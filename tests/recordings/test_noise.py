@@ -149,3 +149,11 @@ def test_the_step_is_found_where_a_file_rounds_it():
 def test_readings_without_a_grid_have_no_step():
     assert find_resolution(np.random.default_rng(0).normal(size=4000)) == 0.0
     assert find_resolution(np.array([])) == 0.0
+
+
+@pytest.mark.parametrize("step", [4.192745350063109e-06, 1.7e-4, 0.3])
+def test_a_coarse_reading_that_stands_still_but_where_it_moves_fast_has_no_noise(step):
+    """Too few windows move fast to count, and in the others nothing changes."""
+    time = np.arange(0.0, 5.0, 0.01)
+    moved = np.where(time > 2.0, 3000.0 * (1.0 - np.cos(2.0 * (time - 2.0))), 0.0)
+    assert estimated(time, step * np.round(moved)).deviation == 0.0
