@@ -95,34 +95,30 @@ def move(a: Arrays, command: float, t: float, slot: int) -> None:
     substep(a, command, t, slot)
 
 
-@njit(forceinline=True)
-def apply_command(n: Places, s: Numbers, command: float) -> None:
-    """Store the command in effect where the drive's limits depend on it."""
-    if n[at.DRIVE_FEEDBACK] != at.NO_FEEDBACK:
-        s[at.COMMAND] = command
-
-
 @njit
 def control_step(d: Numbers, n: Places, s: Numbers, before: float, command: float, w: Numbers) -> None:
-    """Advance the arm by one sample: the last command acts until the delay is over, then the new one."""
+    """Advance the arm by one sample: the last command acts until the delay is over, then the new one.
+
+    The command in effect stands in s meanwhile: limits of the drive and the load of the gears depend on it.
+    """
     a, own = Arrays(d, n, s, w), s[at.COMMAND]
-    apply_command(n, s, before)
+    s[at.COMMAND] = before
     for _ in range(n[at.EARLY_SUBSTEPS]):
         if n[at.STEADY_BODIES] != 1 or not quiet_step(a, before, d[at.EARLY_LENGTH], 0):
             move(a, before, d[at.EARLY_LENGTH], 0)
     for j in range(n[at.LATE_SUBSTEPS]):
         now = mean_during_ramp(d, n, before, command, j * d[at.LATE_LENGTH], (j + 1) * d[at.LATE_LENGTH])
-        apply_command(n, s, now)
+        s[at.COMMAND] = now
         if n[at.STEADY_BODIES] != 1 or not quiet_step(a, now, d[at.LATE_LENGTH], 1):
             move(a, now, d[at.LATE_LENGTH], 1)
-    apply_command(n, s, own)
+    s[at.COMMAND] = own
 
 
 @njit(inline="always")
 def uneven_step(a: Arrays, before: float, command: float, interval: float) -> None:
     """Advance the arm as control_step does, over an interval [s] without tables."""
     d, n, own = a.d, a.n, a.s[at.COMMAND]
-    apply_command(n, a.s, before)
+    a.s[at.COMMAND] = before
     early = min(d[at.EARLY_LENGTH] * n[at.EARLY_SUBSTEPS], interval)
     late = interval - early
     if early > 0.0:
@@ -131,6 +127,6 @@ def uneven_step(a: Arrays, before: float, command: float, interval: float) -> No
     count = max(math.ceil(late / longest - 1e-9), 1) if late > 0.0 else 0
     for j in range(count):
         now = mean_during_ramp(d, n, before, command, j * late / count, (j + 1) * late / count)
-        apply_command(n, a.s, now)
+        a.s[at.COMMAND] = now
         move(a, now, late / count, UNTABULATED)
-    apply_command(n, a.s, own)
+    a.s[at.COMMAND] = own

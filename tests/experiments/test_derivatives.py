@@ -63,6 +63,27 @@ def test_parameters_of_effects(effect):
     parameters, tolerance = EFFECTS[effect]
     arm = Arm.load("thesis").with_effect(effect, **parameters)
     names = [f"effects.{effect}.{key}" for key in arm.known[effect].parameters] + ["hub.inertia"]
+    compare(arm, names, tolerance)
+
+
+@pytest.mark.slow(minutes=2)
+def test_the_load_of_a_late_command():
+    """Friction follows the load of the command in effect, which changes within a sample, and of a ramp on its way."""
+    arm = rigid_axis().with_effect("load_friction", coefficient=0.2).with_effect("input_delay", delay=0.0023)
+    arm = arm.with_effect("rate_limit", rate=300.0)
+    arm = arm.with_effect("rate_limit", rate=300.0)
+    paths = ["load_friction.coefficient", "input_delay.delay", "rate_limit.rate", "coulomb.torque"]
+    compare(arm, [f"effects.{path}" for path in paths] + ["hub.inertia"], 1e-6)
+
+
+def rigid_axis():
+    drive = {"input": "current", "torque_constant": 0.1, "gear_ratio": 10.0, "motor_inertia": 1e-3, "limit": 10.0}
+    effects = {"viscous": {"coefficient": 0.1}, "coulomb": {"torque": 0.3}}
+    return Arm.from_table({"drive": drive, "hub": {"inertia": 0.4}, "effects": effects, "sensors": {"arm_angle": {}}}, "axis")
+
+
+def compare(arm, names, tolerance):
+    """Compare the derivatives of readings by values of an arm with differences."""
     recording, slopes = simulate(arm, SWING, noise=False, derivatives=names)
     assert np.array_equal(np.column_stack([recording.signals[signal] for signal in arm.signals]), played(arm))
     for name in names:

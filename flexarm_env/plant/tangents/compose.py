@@ -14,7 +14,18 @@ from flexarm_env.generated import generated_module
 from flexarm_env.plant.compose import IMPORTS, Compiled, plain
 
 ENTRANCES = ("tangent_numbers", "tangent_rows", "steady_rows", "replay_with_lanes")
-FILES = ("bundles.py", "response.py", "motion.py", "laws.py", "collocation.py", "steady.py", "events.py", "steps.py", "replay.py")
+FILES = (
+    "bundles.py",
+    "response.py",
+    "motion.py",
+    "laws.py",
+    "collocation.py",
+    "steady.py",
+    "events.py",
+    "steps.py",
+    "control_step.py",
+    "replay.py",
+)
 
 
 @lru_cache(maxsize=8)

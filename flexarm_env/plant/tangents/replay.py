@@ -17,10 +17,10 @@ from flexarm_env.plant.propagate import inlined_dot
 from flexarm_env.plant.readings import measure
 from flexarm_env.plant.replay import feed_back, is_lost
 from flexarm_env.plant.tangents.bundles import Run, Tangent, TangentPlaces, tangent_places
+from flexarm_env.plant.tangents.control_step import control_lanes, uneven_lanes
 from flexarm_env.plant.tangents.laws import NUDGE, keep_laws, shift_laws
 from flexarm_env.plant.tangents.motion import clear
 from flexarm_env.plant.tangents.steady import forget_ones, prepare_steady
-from flexarm_env.plant.tangents.steps import control_lanes, uneven_lanes
 
 
 @njit

@@ -1,26 +1,24 @@
-"""The steps of a replay with derivatives: those of control_step, each followed by its derivatives."""
+"""The steps of a replay with derivatives, of whole substeps and of parts: each is followed by its derivatives."""
 
 from __future__ import annotations
-
-import math
 
 from numba import njit
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Blocks, Segment
-from flexarm_env.plant.control_step import hub_rests, mean_during_ramp, table_place
+from flexarm_env.plant.control_step import hub_rests, table_place
 from flexarm_env.plant.event_free_step import event_free_step
 from flexarm_env.plant.event_free_table import DEPTH, ORDER, prepare_step_table, step_table, tabulated_step
 from flexarm_env.plant.events import GEARS, NOTHING, Event, next_event
 from flexarm_env.plant.force_quartic import step_places
-from flexarm_env.plant.forces import effect_torque, evaluate_forces
+from flexarm_env.plant.forces import effect_torque
 from flexarm_env.plant.friction import preslides
 from flexarm_env.plant.modes import is_stuck, record
 from flexarm_env.plant.propagate import advance
 from flexarm_env.plant.quiet_step import quiet_step
 from flexarm_env.plant.stick_slip import remember_friction
 from flexarm_env.plant.substep import FIRST_BLIND_TIME, UNTABULATED, apply_event, find_forces, oppose_motion, substep_places
-from flexarm_env.plant.tangents.bundles import KEY_DELAY, KEY_LENGTH, KEY_SEARCHED, MOST_ORDERS, PER_TABLE, Tangent, TangentPlaces
+from flexarm_env.plant.tangents.bundles import KEY_LENGTH, KEY_SEARCHED, MOST_ORDERS, PER_TABLE, Tangent, TangentPlaces
 from flexarm_env.plant.tangents.collocation import FACTORIALS, fit_lanes
 from flexarm_env.plant.tangents.events import enter_lanes, write_event_lanes, write_physical_lanes
 from flexarm_env.plant.tangents.laws import NUDGE, add_law_lanes, add_slope_lanes, shift_laws, write_arguments, write_slopes
@@ -280,90 +278,3 @@ def step_lanes(a: Arrays, g: Tangent, p: TangentPlaces, command: float, length: 
     if steady:
         begin_step(g, p, slot)
     move_with_lanes(a, g, p, command, length, slot)
-
-
-@njit(forceinline=True)
-def use_command(g: Tangent, p: TangentPlaces, row: int) -> None:
-    """Copy the derivatives of a command to those of the one in effect."""
-    for x in range(g.w.shape[1]):
-        g.w[p.lanes_command, x] = g.w[row, x]
-
-
-@njit
-def shift_start(a: Arrays, g: Tangent, p: TangentPlaces, before: float) -> None:
-    """Carry the derivatives over the time before the delay's end, which is of no length but may change."""
-    n = a.n
-    begin_step(g, p, 0)
-    keep_state(a, g, p)
-    mode = int(a.s[at.MODE])
-    evaluate_forces(a, mode, mode, 0)
-    for j in range(n[at.BODIES] + n[at.POINTS]):
-        g.v[p.coefficients + j] = a.w[j]
-    whole_lanes(a, g, p, mode, before, 0, 0.0, UNTABULATED)
-
-
-@njit(forceinline=True)
-def ramp_lanes(a: Arrays, g: Tangent, p: TangentPlaces, before: float, command: float, start: float, end: float) -> float:
-    """Compute the drive's mean output as mean_during_ramp does, and its derivatives as those of the command in effect."""
-    d, n, w = a.d, a.n, g.w
-    if n[n[at.DRIVE_LAWS]] == 0 and n[n[at.RAMP_LAWS]] == 0:
-        return command
-    use_command(g, p, p.lanes_now)
-    if n[n[at.RAMP_LAWS]] == 0:
-        return command
-    found = mean_during_ramp(d, n, before, command, start, end)
-    by_before = mean_during_ramp(d, n, before + NUDGE, command, start, end)
-    by_before = (by_before - mean_during_ramp(d, n, before - NUDGE, command, start, end)) / (2.0 * NUDGE)
-    by_command = mean_during_ramp(d, n, before, command + NUDGE, start, end)
-    by_command = (by_command - mean_during_ramp(d, n, before, command - NUDGE, start, end)) / (2.0 * NUDGE)
-    for x in range(w.shape[1]):
-        w[p.lanes_command, x] = by_before * w[p.lanes_before, x] + by_command * w[p.lanes_now, x]
-        step = w[p.lanes_step, x]
-        if step != 0.0:
-            shift_laws(a, g, p, x, step)
-            above = mean_during_ramp(d, n, before, command, start, end)
-            shift_laws(a, g, p, x, -step)
-            below = mean_during_ramp(d, n, before, command, start, end)
-            shift_laws(a, g, p, x, 0.0)
-            w[p.lanes_command, x] += (above - below) / (2.0 * step)
-    return found
-
-
-@njit(forceinline=True)
-def control_lanes(a: Arrays, g: Tangent, p: TangentPlaces, before: float, command: float) -> None:
-    """Advance by one sample as control_step does, with derivatives: rows lanes_before and lanes_now of w have the commands'."""
-    d, n = a.d, a.n
-    early = n[at.EARLY_SUBSTEPS]
-    if n[n[at.DRIVE_LAWS]] > 0:
-        use_command(g, p, p.lanes_before)
-    if early == 0 and g.v[p.keys + KEY_DELAY] > 0.0:
-        shift_start(a, g, p, before)
-    for j in range(early + n[at.LATE_SUBSTEPS]):
-        now, slot = before, 0
-        if j >= early:
-            start = (j - early) * d[at.LATE_LENGTH]
-            now, slot = ramp_lanes(a, g, p, before, command, start, start + d[at.LATE_LENGTH]), 1
-        step_lanes(a, g, p, now, d[at.EARLY_LENGTH + slot], slot)
-
-
-@njit
-def uneven_lanes(a: Arrays, g: Tangent, p: TangentPlaces, before: float, command: float, interval: float) -> None:
-    """Advance by a sample as uneven_step does, with derivatives."""
-    d, n, w, gd = a.d, a.n, g.w, g.d
-    early = min(d[at.EARLY_LENGTH] * n[at.EARLY_SUBSTEPS], interval)
-    late = interval - early
-    cut = early < d[at.EARLY_LENGTH] * n[at.EARLY_SUBSTEPS]
-    use_command(g, p, p.lanes_before)
-    for x in range(w.shape[1]):
-        w[p.lanes_length, x] = 0.0 if cut else gd[at.EARLY_LENGTH, x] * n[at.EARLY_SUBSTEPS]
-    if early > 0.0:
-        move_with_lanes(a, g, p, before, early, UNTABULATED)
-    elif g.v[p.keys + KEY_DELAY] > 0.0:
-        shift_start(a, g, p, before)
-    longest = max(d[at.EARLY_LENGTH], d[at.LATE_LENGTH])  # one of them is next to nothing where the delay ends at a sample
-    count = max(math.ceil(late / longest - 1e-9), 1) if late > 0.0 else 0
-    for j in range(count):
-        now = ramp_lanes(a, g, p, before, command, j * late / count, (j + 1) * late / count)
-        for x in range(w.shape[1]):
-            w[p.lanes_length, x] = 0.0 if cut else gd[at.LATE_LENGTH, x] * n[at.LATE_SUBSTEPS] / count
-        move_with_lanes(a, g, p, now, late / count, UNTABULATED)
