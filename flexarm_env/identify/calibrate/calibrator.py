@@ -105,10 +105,26 @@ class Calibrator:
         most = self.settings.errors.nothing_left
         if self.score(found.arm).windows <= most or self.score(found.arm, held_out=False).windows > most:
             return found
-        again = self.calibrate_on_all_data(found)
-        if self._error_on_all_data(again.arm) > most:
-            again = self.calibrate_on_all_data(self._with_undetermined_scanned(found))
-        return again if self._error_on_all_data(again.arm) <= most else found
+        again, left = self._continue_on_all_data(found)
+        if left > most:
+            again, left = self._continue_on_all_data(self._with_undetermined_scanned(found))
+        return again if left <= most else found
+
+    def _continue_on_all_data(self, found: Calibration) -> tuple[Calibration, float]:
+        """Continue a calibration on all of the data as long as that lowers the error, which it returns, too.
+
+        Where constants compensate each other on the fitted part, the rest leads out of a long valley.
+        """
+        left = np.inf
+        for _ in range(1 + self.settings.calibrating.continuations):
+            again = self.calibrate_on_all_data(found)
+            now = self._error_on_all_data(again.arm)
+            if now >= left / self.settings.errors.converged:
+                break
+            found, left = again, now
+            if left <= self.settings.errors.nothing_left:
+                break
+        return found, left
 
     def _with_undetermined_scanned(self, found: Calibration) -> Calibration:
         """Set each constant on which the fitted part does not depend to the value in its prior that leaves least in the rest.

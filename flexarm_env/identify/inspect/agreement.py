@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+from scipy.signal import lfilter
 
 from flexarm_env.identify.settings import MotionFaults
 
@@ -88,6 +90,25 @@ def agreement_late(measured: Floats, modelled: Floats, cell: float, numbers: Mot
 def _at_lag(measured: Floats, modelled: Floats, lag: float, cell: float, numbers: MotionFaults) -> Agreement:
     """Fit a gain at a lag [s]."""
     return replace(agreement(measured, delayed(modelled, lag / cell), cell, numbers), lag=lag)
+
+
+def agreement_filtered(measured: Floats, modelled: Floats, cell: float, numbers: MotionFaults) -> Agreement:
+    """Fit a gain behind the first-order filter, of any time constant up to the longest lag, at which a signal agrees best."""
+    found = minimize_scalar(
+        lambda log: -agreement(measured, filtered(modelled, np.exp(log) / cell), cell, numbers).share,
+        bounds=(np.log(numbers.lag_resolution), np.log(numbers.longest_lag)),
+        method="bounded",
+    )
+    return agreement(measured, filtered(modelled, float(np.exp(found.x)) / cell), cell, numbers)
+
+
+def filtered(values: Floats, cells: float) -> Floats:
+    """Pass values (cells,) through a first-order filter whose time constant is a number of cells; gaps are bridged."""
+    known = np.isfinite(values)
+    place, share = np.arange(len(values)), 1.0 - np.exp(-1.0 / cells)
+    bridged = np.interp(place, place[known], values[known]) if known.any() else values
+    passed = lfilter([share], [1.0, share - 1.0], bridged, zi=[(1.0 - share) * bridged[0]])[0]
+    return np.where(known, passed, np.nan)
 
 
 def delayed(values: Floats, cells: float) -> Floats:

@@ -18,9 +18,10 @@ def late_signals(evidence: Evidence) -> list[Fault]:
         lags = [found.lag for found in evidence.late.values()]
         if max(lags) - min(lags) < evidence.numbers.same_lag:
             return [clock_fault(evidence, "", float(np.median(lags)))]
-    return _hub_out_of_step(evidence) or [
+    found = _hub_out_of_step(evidence) or [
         clock_fault(evidence, signal, lag) for signal, lag in off.items() if _others_are_in_time(evidence, signal)
     ]
+    return [one for one in found if not _is_filtered(evidence, one)]
 
 
 def _hub_out_of_step(evidence: Evidence) -> list[Fault]:
@@ -57,6 +58,13 @@ def _is_late(evidence: Evidence, signal: str) -> bool:
     least, share = (numbers.least_lag, numbers.similar) if exact else (numbers.sure_lag, numbers.alike)
     is_like = late.share > share and late.is_within(numbers.plausible)
     return is_like and abs(late.lag) > least and evidence.is_like_model_later(signal)
+
+
+def _is_filtered(evidence: Evidence, found: Fault) -> bool:
+    """Whether a filter of the sensor, which is no fault of a clock, explains more of a late signal than a lag."""
+    if found.other or found.value is None or found.value <= 0.0:
+        return False
+    return evidence.run.filtered(found.signal).share > evidence.late[found.signal].share
 
 
 def _others_are_in_time(evidence: Evidence, signal: str) -> bool:

@@ -77,10 +77,21 @@ def fit_with_all_constants(
     return fit_models(calibrator, [(n,) for _, n, _ in best], [arm for _, _, arm in best], full, thorough=far)
 
 
-def fit_in_place(calibrator: Calibrator, without: Arm, effects: Sequence[str], progress: Progress) -> list[Model]:
-    """Calibrate an arm with each of some effects, started where it explains most of its residual, as long as there is time."""
+def fit_in_place(
+    calibrator: Calibrator, without: Arm, effects: Sequence[str], progress: Progress, thorough: bool = False
+) -> list[Model]:
+    """Calibrate an arm with each of some effects, started where it explains most of its residual, as long as there is time.
+
+    Args:
+        calibrator: of the recordings.
+        without: the arm without any of the effects.
+        effects: names.
+        progress: of these calibrations.
+        thorough: whether each is started from the nominal constants as well.
+    """
     models = []
-    for model in calibrator.workers.map_in_time([(_fit_from_signature, (calibrator, effect, without)) for effect in effects]):
+    tasks = [(_fit_from_signature, (calibrator, effect, without, thorough)) for effect in effects]
+    for model in calibrator.workers.map_in_time(tasks):
         models.append(model)
         progress.at(len(models) / len(effects), f"refitting with {model.effects[0]} instead")
     return models
@@ -131,11 +142,11 @@ def _starts(calibrator: Calibrator, effect: str, arm: Arm, trials: Sequence[Tria
     return [dict(start) for start, _ in own] + first
 
 
-def _fit_from_signature(calibrator: Calibrator, effect: str, without: Arm) -> Model:
+def _fit_from_signature(calibrator: Calibrator, effect: str, without: Arm, thorough: bool) -> Model:
     dataset = calibrator.dataset
     found = signatures(baseline(calibrator.uncalibrated(without), dataset), effect)
     start = found[0].start if found else first_start(without, effect, dataset)
-    return fit_model(calibrator, (effect,), without.with_effect(effect, **start))
+    return fit_model(calibrator, (effect,), without.with_effect(effect, **start), thorough)
 
 
 def _share_of_companion(calibrator: Calibrator, found: Calibration) -> float:

@@ -11,11 +11,13 @@ import numpy as np
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.progress import Progress
 from flexarm_env.identify.select.criteria import Criteria, Measure
+from flexarm_env.identify.select.fits import fit_in_place
 from flexarm_env.identify.select.forecast_search import ForecastSearch
 from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.propose import nearest, none_comes_near, others, starts_of_search
 from flexarm_env.identify.select.rivals import find_rivals
 from flexarm_env.identify.select.screen import Trial, control_of, screen
+from flexarm_env.identify.select.starts import candidates, shows_part_of_period
 from flexarm_env.identify.select.stepwise import extend_chain
 from flexarm_env.identify.select.swap import RivalComparison, compare_rivals
 from flexarm_env.identify.select.trace import Accepted, Trace, Tried
@@ -173,16 +175,13 @@ class Search:
         for place, effect in enumerate(trace.effects):
             if not self.criteria.can_compare_rivals(trace.model):
                 break
-            known = trace.model.arm.known
-            simpler = [n for n in trace.accepted[place].equivalent if len(known[n].parameters) < len(known[effect].parameters)]
-            if untried or simpler or known[effect].pairs_with_all or self.criteria.leaves_room(trace.model):
+            if untried or self._may_be_another(trace, place) or self.criteria.leaves_room(trace.model):
                 if self.is_late:
                     trace = self._stop(trace, f"{effect} was compared with its rivals")
                     break
-                comparison = compare_rivals(self.calibrator, self.criteria, effect, trace.model, progress)
-                trace = exchange(trace, place, comparison)
-                if comparison.untried:
-                    trace = self._stop(trace, f"{effect} was compared with {', '.join(comparison.untried)}")
+                trace = self._compared(trace, place, progress)
+                if trace.effects[place] != effect and not self.is_late:  # it has rivals of its own
+                    trace = self._compared(trace, place, progress)
         names = trace.effects
         kept = [
             replace(a, equivalent=tuple(n for n in a.equivalent if n == a.equivalent[0] or n not in names))
@@ -190,17 +189,48 @@ class Search:
         ]
         return trace if kept == list(trace.accepted) else trace.then("swap", accepted=kept)
 
+    def _compared(self, trace: Trace, place: int, progress: Progress) -> Trace:
+        """Compare an accepted effect with its rivals, and give its place to the best."""
+        effect = trace.effects[place]
+        comparison = compare_rivals(self.calibrator, self.criteria, effect, trace.model, progress)
+        trace = exchange(trace, place, comparison)
+        if comparison.untried:
+            trace = self._stop(trace, f"{effect} was compared with {', '.join(comparison.untried)}")
+        return trace
+
+    def _may_be_another(self, trace: Trace, place: int) -> bool:
+        """Whether an accepted effect may stand for a simpler one, or for one that was not compared with it."""
+        arm, accepted = trace.model.arm, trace.accepted[place]
+        own = arm.known[accepted.effect]
+        simpler = any(len(arm.known[n].parameters) < len(own.parameters) for n in accepted.equivalent)
+        return simpler or own.pairs_with_all or shows_part_of_period(arm, accepted.effect, self.calibrator.dataset)
+
     def drop_useless(self, trace: Trace) -> Trace:
-        """Drop an effect that later ones have made useless."""
+        """Drop an effect that later ones have made useless, or that only makes up for the wrong one of several equivalents."""
         for effect in trace.effects if len(trace.accepted) > 1 else []:
             if self.is_late:
                 return self._stop(trace, f"the model without {effect} was calibrated")
             calibration = self.calibrator.calibrate(trace.model.arm.without_effect(effect))
             without = judge((), calibration, self.calibrator.dataset)
-            measure = self.criteria.measure([without.score, trace.model.score])
-            if not self.criteria.is_worthwhile(without, trace.model, measure):
-                trace = trace.then("drop", without, [a for a in trace.accepted if a.effect != effect])
+            kept = [a for a in trace.accepted if a.effect != effect]
+            if self._is_useless_beside(without, trace.model):
+                trace = trace.then("drop", without, kept)
+                continue
+            for place, other in enumerate(kept):
+                rest = trace.model.arm.without_effect(effect).without_effect(other.effect)
+                names = [n for n in other.equivalent[1:] if n not in trace.effects and n in candidates(rest)]
+                models = fit_in_place(self.calibrator, rest, names, Progress(), thorough=True)
+                better = [m for m in models if not m.at_bound and self._is_useless_beside(m, trace.model)]
+                if better:
+                    best = min(better, key=lambda m: m.score.windows)
+                    name = best.effects[0]
+                    entry = Accepted(name, (name, *(m.effects[0] for m in better if m is not best)), best.score)
+                    return trace.then("drop", best, _placed(kept, place, entry))
         return trace
+
+    def _is_useless_beside(self, without: Model, found: Model) -> bool:
+        """Whether a model without an effect is as good as one with it."""
+        return not self.criteria.is_worthwhile(without, found, self.criteria.measure([without.score, found.score]))
 
     def _combine_at_once(self, trace: Trace, models: Sequence[Model], progress: Progress) -> Trace:
         """Accept the first effect and more beside it where none comes near alone, but some explain the data together."""

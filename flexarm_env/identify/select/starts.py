@@ -34,6 +34,25 @@ def rivals_of(effect: str, without: Arm) -> list[str]:
     return [n for n in candidates(without) if n in known[effect].confused_with or effect in known[n].confused_with]
 
 
+def simpler_beyond(effect: str, without: Arm) -> list[str]:
+    """List the effects of fewer numbers with which the rivals of an effect are confused, and it is not."""
+    known, near = without.known, rivals_of(effect, without)
+    beyond = [n for n in candidates(without) if n not in (effect, *near) and any(n in rivals_of(r, without) for r in near)]
+    return [n for n in beyond if len(known[n].parameters) < len(known[effect].parameters)]
+
+
+def shows_part_of_period(arm: Arm, effect: str, dataset: Dataset) -> bool:
+    """Whether an effect of an arm is a sine of the angle of which the motion shows less than one period.
+
+    Such a part of a sine is as smooth as other torques of the angle are.
+    """
+    if not arm.known[effect].scan_phase or "arm_angle" not in dataset.signals:
+        return False
+    column = dataset.signals.index("arm_angle")
+    widest = max(float(run.extent[column]) for run in dataset.runs)
+    return arm.effects[effect]["cycles"] * widest < 2.0 * math.pi
+
+
 def starts_of(arm: Arm, effect: str, dataset: Dataset) -> list[dict[str, float]]:
     """List the values from which an effect is tried, in the scales of the data; for offsets, one start for each sensor."""
     known = arm.known[effect]

@@ -10,7 +10,7 @@ from flexarm_env.identify.select.criteria import Criteria
 from flexarm_env.identify.select.fits import fit_in_place
 from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.rivals import is_simpler_and_as_good, spread
-from flexarm_env.identify.select.starts import rivals_of
+from flexarm_env.identify.select.starts import rivals_of, shows_part_of_period, simpler_beyond
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,9 @@ def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now:
         progress: of these calibrations.
     """
     without = now.arm.without_effect(effect)
-    names = rivals_of(effect, without)
-    fitted = fit_in_place(calibrator, without, names, progress)
+    smooth = shows_part_of_period(now.arm, effect, calibrator.dataset)
+    names = rivals_of(effect, without) + (simpler_beyond(effect, without) if smooth else [])
+    fitted = fit_in_place(calibrator, without, names, progress, thorough=smooth)
     untried = tuple(names[len(fitted) :])
     rivals = [m for m in fitted if not m.at_bound]
     if not rivals:
