@@ -117,4 +117,5 @@ def fake_diagnosis(arm, verdict="effects", effects=("backlash",), seed=0):
         ["A slow ramp would settle it."],
         1.23,
         seed,
+        probability=[[0.83, 0.12]] if effects else [],
     )

@@ -45,4 +45,6 @@ def diagnosis(verdict: str = "effects") -> Diagnosis:
     constants = {"torque_constant": KPHI, "backlash_gap": GAP}
     notes = ["A slow ramp would settle it."]
     free = {key: 10.0 * value for key, value in error.items()}
-    return Diagnosis(verdict, effects, equivalent, ranking, error, free, constants, better, arm, arm, notes, 1.2, 0)
+    probable = [[0.83, 0.12]] if found else []
+    parts = (verdict, effects, equivalent, ranking, error, free, constants, better, arm, arm, notes, 1.2, 0)
+    return Diagnosis(*parts, probability=probable)

@@ -138,6 +138,26 @@ def coverage(what: str, goal: tuple[float, float], held: Sequence[bool]) -> Figu
     return Figure(what, words, value, len(held), value is not None and goal[0] <= value <= goal[1])
 
 
+def believed(answers: Iterable[Answer]) -> list[tuple[float, bool]]:
+    """List the probability of every named effect, and whether the machine has it or its exact twin."""
+    found = []
+    for answer in answers:
+        hidden = merge_twins(answer["case"]["effects"])
+        for name, every in zip(answer["found"]["effects"], answer["found"]["probability"], strict=True):
+            found.append((every[0], merge_twins([name]) <= hidden))
+    return found
+
+
+def calibration(what: str, most: float, pairs: Sequence[tuple[float, bool]]) -> Figure:
+    """Compute the expected calibration error: the mean difference of probabilities and the shares that were right."""
+    groups: dict[float, list[bool]] = {}
+    for probability, right in pairs:
+        groups.setdefault(round(probability, 2), []).append(right)
+    off = [len(rights) * abs(probability - float(np.mean(rights))) for probability, rights in groups.items()]
+    value = sum(off) / len(pairs) if pairs else None
+    return Figure(what, f"≤ {100 * most:.0f} %", value, len(pairs), value is not None and value <= most)
+
+
 def figures(answers: Iterable[Answer]) -> list[Figure]:
     """Compute the lines of the table."""
     every = list(answers)

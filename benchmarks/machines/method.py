@@ -18,4 +18,12 @@ def by_diagnosis_or_failure(arm: Arm, recordings: Sequence[Recording]) -> dict[s
         return by_diagnosis(arm, recordings)
     except Exception as error:
         message = f"{type(error).__name__}: {error}"
-        return {"verdict": FAILED, "effects": [], "ranking": [], "error": {}, "constants": {}, "message": message}
+        return {
+            "verdict": FAILED,
+            "effects": [],
+            "probability": [],
+            "ranking": [],
+            "error": {},
+            "constants": {},
+            "message": message,
+        }

@@ -6,7 +6,18 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from benchmarks.hidden_effects.score import Figure, coverage, is_right, is_right_or_twin, median, merge_twins, share, verdict_in
+from benchmarks.hidden_effects.score import (
+    Figure,
+    believed,
+    calibration,
+    coverage,
+    is_right,
+    is_right_or_twin,
+    median,
+    merge_twins,
+    share,
+    verdict_in,
+)
 from benchmarks.hidden_effects.truth import holds
 from benchmarks.machines.method import FAILED
 
@@ -69,5 +80,6 @@ def figures(answers: Sequence[Answer]) -> list[Figure]:
         share("outside the catalogue: `unknown` or `partly`", 0.9, of("outside"), verdict_in("unknown", "partly")),
         share("false alarm on nulls", 0.01, of("null"), verdict_in(*ALARMS), at_most=True),
         *(coverage(f"90 % intervals that hold the truth, {name}", (0.85, 0.95), held[name]) for name in sorted(held)),
+        calibration("probability of named effects, expected calibration error", 0.05, believed(answers)),
         median("time of one core, median", "≤ 120 s", [a["cpu_seconds"] for a in answers], lambda v: v <= 120.0, "s"),
     ]

@@ -13,6 +13,7 @@ from flexarm_env.identify.calibrate.intervals import estimates
 from flexarm_env.identify.explain.budget import Budget, budget, budget_notes, rest_notes, torque_notes
 from flexarm_env.identify.explain.detection_limits import detection_limits
 from flexarm_env.identify.explain.error_steps import ErrorStep, error_steps
+from flexarm_env.identify.explain.probability import probabilities
 from flexarm_env.identify.explain.unexplained_torque import unexplained_torque
 from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.origin import with_origin
@@ -65,6 +66,11 @@ def conclude(
         verdict=verdict,
         effects=[a.effect for a in accepted],
         equivalent=[list(a.equivalent) for a in accepted],
+        probability=probabilities(
+            [a.equivalent for a in accepted],
+            0.0 if verdict == "effects" else model.score.excess / base.score.excess,
+            calibrator.settings.probabilities,
+        ),
         ranking=ranking,
         error={name: score.windows for name, score in scores.items()},
         free_run={name: scores[name].free_run for name in free},

@@ -101,6 +101,7 @@ class Diagnosis(Shown):
             "unknown", "recordings" or "insufficient_data".
         effects: those accepted, in the order of their weight.
         equivalent: for each accepted effect, all that these data cannot tell from it, itself first.
+        probability: of each name in `equivalent`, in the same order.
         ranking: candidates by gain.
         error: "nominal", "refitted", "final", and one entry after each accepted effect under its name, of the model that has it
             and those before it; rms over noise, held out, windows of 1 s.
@@ -142,6 +143,7 @@ class Diagnosis(Shown):
     settings: Settings = SETTINGS
     closed_loop: dict[str, float] = field(default_factory=dict)
     budget: Budget = field(default_factory=Budget)
+    probability: list[list[float]] = field(default_factory=list)
     stopped: bool | None = None
 
     def as_json(self) -> dict[str, Any]:
@@ -151,6 +153,7 @@ class Diagnosis(Shown):
             "effects": self.effects,
             "recordings": [fault.as_json() for fault in self.recordings],
             "equivalent": self.equivalent,
+            "probability": self.probability,
             "ranking": [
                 {
                     "effect": c.effect,

@@ -86,13 +86,13 @@ class ResultsPanel:
         found = self.session.diagnosis
         if found is None:
             return
-        same = {name for names in found.equivalent for name in names}
+        same, probable = {name for names in found.equivalent for name in names}, words.probabilities(found)
         with self.ranking:
             for one in found.ranking[:RANKED]:
-                self._row(one, one.effect in same and not one.accepted)
+                self._row(one, one.effect in same and not one.accepted, probable.get(one.effect, ""))
         self.enable(not self.session.busy)
 
-    def _row(self, one: Candidate, same: bool) -> None:
+    def _row(self, one: Candidate, same: bool, probable: str) -> None:
         with html.div().classes(f"ranked{' accepted' if one.accepted else ''}"):
             mark = "✓ " if one.accepted else "≈ " if same else ""
             ui.label(mark + one.effect.replace("_", " ")).classes("effect-name")
@@ -105,8 +105,9 @@ class ResultsPanel:
                 self.buttons.append(button)
             with html.div().classes("bar"):
                 html.div().style(f"width: {100.0 * one.gain:.1f}%")
-            if one.estimates:
-                ui.label(words.parameters_of(one.estimates)).classes("parameters")
+            facts = [f"probability {probable}"] if probable else []
+            if facts or one.estimates:
+                ui.label(", ".join(facts + [words.parameters_of(one.estimates)] * bool(one.estimates))).classes("parameters")
 
     def _add(self, effect: str) -> None:
         self.show_error("")

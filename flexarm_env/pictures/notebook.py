@@ -78,11 +78,18 @@ def _(result: Comparison) -> str:
 
 @as_html.register
 def _(result: Diagnosis) -> str:
+    probable = words.probabilities(result)
     ranking = [
-        ["✓" if c.accepted else "", c.effect, f"{100 * c.gain:.0f} %", words.parameters_of(c.estimates)]
+        [
+            "✓" if c.accepted else "",
+            c.effect,
+            f"{100 * c.gain:.0f} %",
+            probable.get(c.effect, ""),
+            words.parameters_of(c.estimates),
+        ]
         for c in result.ranking[:SHORT_RANKING]
     ]
     steps = [[name, words.number(value)] for name, value in words.steps_of(result.error, result.effects)]
     first = _table(words.verdict(result), ["step", "held-out error over noise"], steps)
-    second = _table("Effects", ["", "effect", "gain", "parameters (90 % interval)"], ranking)
+    second = _table("Effects", ["", "effect", "gain", "probability", "parameters (90 % interval)"], ranking)
     return first + (second if ranking else "")

@@ -144,12 +144,16 @@ def _ranking(diagnosis: Diagnosis) -> str:
     if not diagnosis.ranking:
         return ""
     same = {name for names in diagnosis.equivalent for name in names}
-    rows = []
+    rows, probable = [], words.probabilities(diagnosis)
     for one in diagnosis.ranking:
         word = "accepted" if one.accepted else "indistinguishable from it" if one.effect in same else ""
-        rows.append([one.effect, word, words.parameters_of(one.estimates) or words.NOTHING, f"{100 * one.gain:.0f} %"])
-    columns = ["effect", "", "parameters (90 % interval)", "gain"]
-    text = "Gain is the share of the refitted model's excess held-out error (error² − 1) that the effect removes."
+        values = words.parameters_of(one.estimates) or words.NOTHING
+        rows.append([one.effect, word, values, probable.get(one.effect, ""), f"{100 * one.gain:.0f} %"])
+    columns = ["effect", "", "parameters (90 % interval)", "probability", "gain"]
+    text = (
+        "Gain is the share of the refitted model's excess held-out error (error² − 1) that the effect removes. "
+        "Probability is the share of such answers that was right on machines whose effects are known."
+    )
     return section("Which effect", paragraph(text), table(columns, rows, words=3))
 
 

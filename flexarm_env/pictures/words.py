@@ -236,6 +236,12 @@ def size_of(one: Fault) -> str:
     return NOTHING if one.value is None else f"{number(one.value, 4)} {plain_unit(one.unit)}".strip()
 
 
+def probabilities(diagnosis: Diagnosis) -> dict[str, str]:
+    """Format the probability of each named effect, and of those that equal it, by effect: "83 %"."""
+    pairs = zip(diagnosis.equivalent, diagnosis.probability, strict=True)
+    return {name: percent(one) for names, every in pairs for name, one in zip(names, every, strict=True)}
+
+
 def _missing(diagnosis: Diagnosis) -> str:
     named = {c.effect: parameters_of(c.estimates) for c in accepted(diagnosis)}
     parts = [f"{name}, {named[name]}" if named.get(name) else name for name in diagnosis.effects]

@@ -180,8 +180,16 @@ def faults(found: Sequence[Fault]) -> Table:
 
 
 def _ranking(result: Diagnosis) -> list[RenderableType]:
+    probable = words.probabilities(result)
     rows = [
-        ["✓" if c.accepted else "", c.effect, words.bar(c.gain, 8), f"{100 * c.gain:.0f} %", words.parameters_of(c.estimates)]
+        [
+            "✓" if c.accepted else "",
+            c.effect,
+            words.bar(c.gain, 8),
+            f"{100 * c.gain:.0f} %",
+            probable.get(c.effect, ""),
+            words.parameters_of(c.estimates),
+        ]
         for c in result.ranking[:SHORT_RANKING]
     ]
     if not rows:
@@ -189,8 +197,9 @@ def _ranking(result: Diagnosis) -> list[RenderableType]:
     title = "Effects by the share of the excess error that each removes"
     if len(result.ranking) > SHORT_RANKING:
         title += f" ({SHORT_RANKING} of {len(result.ranking)}; --json FILE has all)"
-    made = text_table(title, ["", "effect", "", "gain", "parameters (90 % interval)"], rows)
-    made.columns[3].justify = "right"
+    made = text_table(title, ["", "effect", "", "gain", "probability", "parameters (90 % interval)"], rows)
+    for column in made.columns[3:5]:
+        column.justify = "right"
     return [made]
 
 

@@ -30,6 +30,7 @@ def answer(case, effects, verdict="effects", final=1.0):
             "verdict": verdict,
             "effects": effects,
             "equivalent": [[e] for e in effects],
+            "probability": [[0.95] for _ in effects],
             "ranking": [{"effect": e, "accepted": True, "parameters": {}} for e in effects],
             "error": {"nominal": 9.0, "refitted": 5.0, "final": final},
             "constants": {},

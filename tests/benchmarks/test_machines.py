@@ -172,6 +172,7 @@ def answer(kind, hidden, named, verdict="effects", **truth):
         "found": {
             "verdict": verdict,
             "effects": named,
+            "probability": [[0.95] for _ in named],
             "ranking": [{"effect": n, "accepted": True, "parameters": {"mass": {"low": 1.0, "high": 2.0}}} for n in named],
             "error": {"nominal": 9.0, "final": 1.0},
             "constants": {"hub_inertia": {"low": 1.0, "high": 2.0}},

@@ -49,7 +49,18 @@ def test_diagnose_says_its_verdict(flexarm, identify, runs, verdict, effects, co
 def test_diagnose_writes_what_the_contract_says(flexarm, identify, runs, tmp_path):
     assert flexarm("diagnose", runs, "--json", tmp_path / "d.json", "--save", tmp_path / "arm.toml") == 0
     found = json.loads((tmp_path / "d.json").read_text())
-    for key in ("verdict", "effects", "equivalent", "ranking", "error", "free_run", "constants", "seconds", "seed"):
+    for key in (
+        "verdict",
+        "effects",
+        "equivalent",
+        "probability",
+        "ranking",
+        "error",
+        "free_run",
+        "constants",
+        "seconds",
+        "seed",
+    ):
         assert key in found
     assert found["ranking"][0]["parameters"]["gap"]["unit"] == "rad"
     assert found["version"] == flexarm_env.__version__

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from flexarm_env.identify.settings.calibrating import Calibrating, ForecastFit, Intervals, LeastSquares, Parameters, Refining
 from flexarm_env.identify.settings.error_scale import ErrorScale
-from flexarm_env.identify.settings.explaining import DetectionLimits, ExcitationLimits, Explaining
+from flexarm_env.identify.settings.explaining import DetectionLimits, ExcitationLimits, Explaining, Probabilities
 from flexarm_env.identify.settings.guards import (
     FAILED_ERROR,
     LARGEST_LOG,
@@ -57,6 +57,7 @@ __all__ = [
     "Observers",
     "Parameters",
     "Preparation",
+    "Probabilities",
     "ProcessNoise",
     "Promising",
     "Proposing",

@@ -10,6 +10,29 @@ from flexarm_env.identify.settings.number import tuned
 HIDDEN_SIZES = "simulated effects: a third of the limit stays hidden, three times as much shows; no sweep recorded"
 
 
+#: Origin of the probabilities.
+NAMED = "of the effects named on 144 machines of seeds 126543 and 129856 (`benchmarks.machines`)"
+
+
+@dataclass(frozen=True)
+class Probabilities:
+    """How often named effects are right."""
+
+    explained: float = tuned(0.95, "Where only noise is left, an effect or one that is equivalent to it.", f"125 of 131 {NAMED}")
+    mostly: float = tuned(0.8, "The same where more than noise is left, but little of the excess.", f"6 of 8 {NAMED}")
+    little: float = tuned(
+        0.01, "Share of the excess in windows that is little.", f"right ones left at most 0.005, wrong ones at least 0.05 {NAMED}"
+    )
+    partly: float = tuned(
+        0.15,
+        "The same where more of the excess is left.",
+        f"0 of 11, all on machines with effects of no catalogue {NAMED}; on CU Boulder's arms Coulomb friction is right",
+    )
+    first: float = tuned(
+        0.87, "Share of the first of several equivalents; the others have the rest in equal parts.", f"25 of 29 {NAMED}"
+    )
+
+
 @dataclass(frozen=True)
 class DetectionLimits:
     """The size up to which an absent effect would go undetected."""

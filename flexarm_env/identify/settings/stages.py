@@ -11,7 +11,7 @@ from typing import Any
 
 from flexarm_env.identify.settings.calibrating import Calibrating, ForecastFit, Intervals, LeastSquares, Parameters, Refining
 from flexarm_env.identify.settings.error_scale import ErrorScale
-from flexarm_env.identify.settings.explaining import DetectionLimits, ExcitationLimits, Explaining
+from flexarm_env.identify.settings.explaining import DetectionLimits, ExcitationLimits, Explaining, Probabilities
 from flexarm_env.identify.settings.initial_states import InitialStates
 from flexarm_env.identify.settings.inspecting import Inspecting
 from flexarm_env.identify.settings.motion_faults import MotionFaults
@@ -53,6 +53,7 @@ class Settings:
     screening: Screening = field(default_factory=Screening)
     proposing: Proposing = field(default_factory=Proposing)
     selecting: Selecting = field(default_factory=Selecting)
+    probabilities: Probabilities = field(default_factory=Probabilities)
     detection: DetectionLimits = field(default_factory=DetectionLimits)
     excitation: ExcitationLimits = field(default_factory=ExcitationLimits)
     explaining: Explaining = field(default_factory=Explaining)
