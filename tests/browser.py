@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import io
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+import numpy as np
 import pytest
+from PIL import Image
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 ARGUMENTS = (
@@ -54,3 +57,9 @@ def grave_faults(page: Any) -> list[str]:
 def width_beyond(page: Any) -> int:
     """Return by how many pixels a page is wider than its window."""
     return page.evaluate("document.documentElement.scrollWidth - window.innerWidth")
+
+
+def brightness(page: Any) -> tuple[float, float]:
+    """Return the mean brightness (0 to 1) of a page's corner, and the largest one in a picture of it."""
+    picture = np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("L"), dtype=float) / 255.0
+    return float(picture[:4, :4].mean()), float(picture.max())

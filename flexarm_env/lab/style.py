@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from flexarm_env.pictures.style import DARK
+
 PRIMARY = "#005a8c"  # white text on it has a contrast of 7
 
-CSS = """
+CSS = (
+    """
 body { font: 16px/1.45 system-ui, sans-serif; color: #222; background: #f6f7f8; }
 .nicegui-content { padding: 0; }
 .lab { max-width: 1420px; width: 100%; margin: 0 auto; padding: .8rem 1.2rem 3rem; box-sizing: border-box; }
@@ -67,3 +70,5 @@ h2 { font-size: 1rem; font-weight: 600; line-height: 1.4; margin: 0 0 .5rem; let
   .verdict { font-size: 1.05rem; } .effects { max-height: none; }
 }
 """
+    + DARK
+)

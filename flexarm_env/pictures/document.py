@@ -15,7 +15,7 @@ import plotly.graph_objects as go
 import plotly.offline
 
 from flexarm_env import __version__
-from flexarm_env.pictures.style import AFTER, GRID, INK
+from flexarm_env.pictures.style import AFTER, DARK, GRID, INK
 
 CSS = f"""
 :root {{ color-scheme: light; }}
@@ -43,6 +43,7 @@ td.text {{ min-width: 15rem; }} td.code {{ font-family: ui-monospace, monospace;
 details {{ margin: .6rem 0; }} summary {{ cursor: pointer; padding: .3rem 0; font-weight: 600; }}
 footer {{ margin-top: 2.5rem; color: #555; font-size: .85rem; }}
 @media (max-width: 600px) {{ body {{ padding: .7rem; }} .verdict {{ font-size: 1.12rem; }} th, td {{ padding-right: .6rem; }} }}
+{DARK}
 @media print {{ body {{ max-width: none; font-size: 11pt; }} h2, h3, summary {{ break-after: avoid; }}
   .modebar, .updatemenu-container {{ display: none; }}
   .panels.wide {{ grid-template-columns: 1fr 1fr; }} .panels {{ grid-template-columns: 1fr 1fr; }} }}

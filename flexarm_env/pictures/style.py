@@ -7,6 +7,13 @@ from __future__ import annotations
 
 from typing import Any
 
+#: Rule of pages for a dark scheme. All colours turn, those of figures, too: hues stay, and white becomes #141414.
+DARK = """
+@media screen and (prefers-color-scheme: dark) {
+  html { background: #fff; filter: invert(.92) hue-rotate(180deg); }
+}
+"""
+
 MEASURED = "#a3a3a3"
 BEFORE = "#d55e00"
 AFTER = "#0072b2"

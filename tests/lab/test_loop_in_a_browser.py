@@ -23,7 +23,7 @@ import pytest
 pytest.importorskip("nicegui")
 pytest.importorskip("playwright")
 
-from browser import DESKTOP, PHONE, grave_faults, needs_chromium, opened, width_beyond
+from browser import DESKTOP, PHONE, brightness, grave_faults, needs_chromium, opened, width_beyond
 from scipy.signal import cont2discrete
 
 import flexarm_env
@@ -248,6 +248,18 @@ def test_axe_finds_no_serious_fault(lab, folder, viewport):
         page.get_by_role("slider", name="coulomb torque").wait_for()
         assert grave_faults(page) == []
         assert width_beyond(page) <= 0
+        assert errors == []
+
+
+@needs_chromium
+def test_it_follows_a_dark_scheme(lab):
+    with opened(color_scheme="dark") as (page, errors):
+        page.set_default_timeout(PATIENCE)
+        page.goto(lab.url)
+        page.get_by_text("Drop recordings of the arm in").wait_for()
+        corner, brightest = brightness(page)
+        assert corner < 0.15
+        assert brightest > 0.8
         assert errors == []
 
 

@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip("plotly")
 pytest.importorskip("playwright")
 
-from browser import PHONE, grave_faults, needs_chromium, opened, width_beyond
+from browser import PHONE, brightness, grave_faults, needs_chromium, opened, width_beyond
 from picture_results import comparison, diagnosis, recordings
 
 from flexarm_env.pictures.page import Findings, page
@@ -45,6 +45,16 @@ def test_it_opens_offline_and_draws_all_that_is_not_folded(report):
         shown.locator("summary", has_text="Residuals of").first.click()
         shown.wait_for_selector("details[open] .main-svg")
         assert errors == []
+
+
+@pytest.mark.parametrize(("scheme", "is_dark"), [("light", False), ("dark", True)])
+def test_it_follows_the_scheme(report, scheme, is_dark):
+    with opened(color_scheme=scheme) as (shown, _):
+        shown.goto(report.as_uri())
+        shown.wait_for_selector(DRAWN)
+        corner, brightest = brightness(shown)
+        assert (corner < 0.1) is is_dark
+        assert brightest > 0.8  # of text, or of paper
 
 
 def test_it_fits_a_phone(report):
