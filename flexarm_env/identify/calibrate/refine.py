@@ -71,6 +71,7 @@ def _step(residual: Residual, here: Refined, prior: Floats, numbers: Refining) -
     assert here.jacobian is not None
     j = here.jacobian * prior
     strengths, axes = np.linalg.eigh(j.T @ j)
+    strengths = np.maximum(strengths, 0.0)  # rounding makes the least of very different ones negative
     slope = axes.T @ (j.T @ here.residual + here.x / prior)
     promised = float(np.sum(slope**2 / (strengths + 1.0)))
     for damping in numbers.dampings if promised >= numbers.least_promise else ():

@@ -180,8 +180,6 @@ class Search:
                     trace = self._stop(trace, f"{effect} was compared with its rivals")
                     break
                 trace = self._compared(trace, place, progress)
-                if trace.effects[place] != effect and not self.is_late:  # it has rivals of its own
-                    trace = self._compared(trace, place, progress)
         names = trace.effects
         kept = [
             replace(a, equivalent=tuple(n for n in a.equivalent if n == a.equivalent[0] or n not in names))
@@ -189,14 +187,16 @@ class Search:
         ]
         return trace if kept == list(trace.accepted) else trace.then("swap", accepted=kept)
 
-    def _compared(self, trace: Trace, place: int, progress: Progress) -> Trace:
-        """Compare an accepted effect with its rivals, and give its place to the best."""
+    def _compared(self, trace: Trace, place: int, progress: Progress, known: frozenset[str] = frozenset()) -> Trace:
+        """Compare an accepted effect with its rivals, and what takes its place with those of its own that are not known yet."""
         effect = trace.effects[place]
-        comparison = compare_rivals(self.calibrator, self.criteria, effect, trace.model, progress)
+        comparison = compare_rivals(self.calibrator, self.criteria, effect, trace.model, progress, known)
         trace = exchange(trace, place, comparison)
         if comparison.untried:
-            trace = self._stop(trace, f"{effect} was compared with {', '.join(comparison.untried)}")
-        return trace
+            return self._stop(trace, f"{effect} was compared with {', '.join(comparison.untried)}")
+        if comparison.effect == effect or self.is_late:
+            return trace
+        return self._compared(trace, place, progress, known | comparison.tried)
 
     def _may_be_another(self, trace: Trace, place: int) -> bool:
         """Whether an accepted effect may stand for a simpler one, or for one that was not compared with it."""

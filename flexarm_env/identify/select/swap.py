@@ -32,7 +32,14 @@ class RivalComparison:
     untried: tuple[str, ...] = ()
 
 
-def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now: Model, progress: Progress) -> RivalComparison:
+def compare_rivals(
+    calibrator: Calibrator,
+    criteria: Criteria,
+    effect: str,
+    now: Model,
+    progress: Progress,
+    known: frozenset[str] = frozenset(),
+) -> RivalComparison:
     """Compare an effect of a model with its rivals.
 
     Args:
@@ -41,10 +48,12 @@ def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now:
         effect: one of those of the model.
         now: the model with everything that was accepted.
         progress: of these calibrations.
+        known: rivals with which it was compared before.
     """
     without = now.arm.without_effect(effect)
     smooth = shows_part_of_period(now.arm, effect, calibrator.dataset)
-    names = rivals_of(effect, without) + (simpler_beyond(effect, without) if smooth else [])
+    every = rivals_of(effect, without) + (simpler_beyond(effect, without) if smooth else [])
+    names = [name for name in every if name not in known]
     fitted = fit_in_place(calibrator, without, names, progress, thorough=smooth)
     untried = tuple(names[len(fitted) :])
     rivals = [m for m in fitted if not m.at_bound]
@@ -61,11 +70,11 @@ def compare_rivals(calibrator: Calibrator, criteria: Criteria, effect: str, now:
     better = better or (is_equivalent and is_simpler_and_as_good(rival, own, alike_to))
     if replace(now, effects=(effect,)).at_bound:  # no size of it explains the data
         better = better or measure(first.score) <= criteria.equivalence_level(now.score, measure)
-    every = {effect: now} | {m.effects[0]: m for m in rivals}
+    models = {effect: now} | {m.effects[0]: m for m in rivals}
     taken = first.effects[0] if better else effect
-    level = criteria.equivalence_level(every[taken].score, measure)
-    alike = {name: m for name, m in every.items() if name != taken and measure(m.score) <= level}
-    return RivalComparison(taken, every[taken], alike, frozenset(every), untried)
+    level = criteria.equivalence_level(models[taken].score, measure)
+    alike = {name: m for name, m in models.items() if name != taken and measure(m.score) <= level}
+    return RivalComparison(taken, models[taken], alike, frozenset(models), untried)
 
 
 def _on_all_data(calibrator: Calibrator, rival: Model, now: Model) -> tuple[Model, Model, float]:
