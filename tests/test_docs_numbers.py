@@ -21,6 +21,7 @@ from benchmarks.hidden_effects.score import Figure, figures
 
 RESULTS = PROJECT / "results"
 HIDDEN = RESULTS / "hidden_effects" / "diagnose-8"
+MACHINES = RESULTS / "machines" / "seed-138948"
 
 
 def demo_table(numbers: str) -> str:
@@ -85,7 +86,7 @@ def hidden_effects_words(numbers: str) -> str:
 
 
 def hidden_effects_table(written: str) -> str:
-    """The benchmark's table, without its heading."""
+    """A benchmark's table, without its heading."""
     return written.split("\n", 2)[2]
 
 
@@ -223,6 +224,7 @@ TABLES = (
     Table("robustness", PROJECT / "docs" / "controllers.md", RESULTS / "robustness" / "robustness.json", robustness_table),
     Table("hidden-effects", README, HIDDEN / "table.json", hidden_effects_words),
     Table("hidden-effects", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.md", hidden_effects_table),
+    Table("machines", PROJECT / "docs" / "machines.md", MACHINES / "table.md", hidden_effects_table),
     Table("methods", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.json", methods_table),
     Table("rigs", PROJECT / "docs" / "rigs.md", RESULTS / "rigs" / "rigs.json", rigs_tables),
     Table("recipes", PROJECT / "docs" / "learning.md", RESULTS / "recipe" / "recipe.md", lines_with("| observation")),
