@@ -179,7 +179,7 @@ class Search:
                 if self.is_late:
                     trace = self._stop(trace, f"{effect} was compared with its rivals")
                     break
-                trace = self._compared(trace, place, progress)
+                trace = self._compare(trace, place, progress)
         names = trace.effects
         kept = [
             replace(a, equivalent=tuple(n for n in a.equivalent if n == a.equivalent[0] or n not in names))
@@ -187,16 +187,16 @@ class Search:
         ]
         return trace if kept == list(trace.accepted) else trace.then("swap", accepted=kept)
 
-    def _compared(self, trace: Trace, place: int, progress: Progress, known: frozenset[str] = frozenset()) -> Trace:
-        """Compare an accepted effect with its rivals, and what takes its place with those of its own that are not known yet."""
+    def _compare(self, trace: Trace, place: int, progress: Progress, compared: frozenset[str] = frozenset()) -> Trace:
+        """Compare an accepted effect with its rivals, and what takes its place with those of its own that are new."""
         effect = trace.effects[place]
-        comparison = compare_rivals(self.calibrator, self.criteria, effect, trace.model, progress, known)
+        comparison = compare_rivals(self.calibrator, self.criteria, effect, trace.model, progress, compared)
         trace = exchange(trace, place, comparison)
         if comparison.untried:
             return self._stop(trace, f"{effect} was compared with {', '.join(comparison.untried)}")
         if comparison.effect == effect or self.is_late:
             return trace
-        return self._compared(trace, place, progress, known | comparison.tried)
+        return self._compare(trace, place, progress, compared | comparison.tried)
 
     def _may_be_another(self, trace: Trace, place: int) -> bool:
         """Whether an accepted effect may stand for a simpler one, or for one that was not compared with it."""

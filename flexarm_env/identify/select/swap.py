@@ -38,7 +38,7 @@ def compare_rivals(
     effect: str,
     now: Model,
     progress: Progress,
-    known: frozenset[str] = frozenset(),
+    compared: frozenset[str] = frozenset(),
 ) -> RivalComparison:
     """Compare an effect of a model with its rivals.
 
@@ -48,12 +48,12 @@ def compare_rivals(
         effect: one of those of the model.
         now: the model with everything that was accepted.
         progress: of these calibrations.
-        known: rivals with which it was compared before.
+        compared: rivals that are left out, as they were compared before.
     """
     without = now.arm.without_effect(effect)
     smooth = shows_part_of_period(now.arm, effect, calibrator.dataset)
     every = rivals_of(effect, without) + (simpler_beyond(effect, without) if smooth else [])
-    names = [name for name in every if name not in known]
+    names = [name for name in every if name not in compared]
     fitted = fit_in_place(calibrator, without, names, progress, thorough=smooth)
     untried = tuple(names[len(fitted) :])
     rivals = [m for m in fitted if not m.at_bound]

@@ -19,9 +19,11 @@ class Probabilities:
     """How often named effects are right."""
 
     explained: float = tuned(0.95, "Where only noise is left, an effect or one that is equivalent to it.", f"125 of 131 {NAMED}")
-    mostly: float = tuned(0.8, "The same where more than noise is left, but little of the excess.", f"6 of 8 {NAMED}")
+    mostly: float = tuned(0.8, "The same where more than noise is left, but little of the excess.", f"7 of 8 {NAMED}")
     little: float = tuned(
-        0.01, "Share of the excess in windows that is little.", f"right ones left at most 0.005, wrong ones at least 0.05 {NAMED}"
+        0.01,
+        "Share of the excess in windows that is little.",
+        f"right ones left at most 0.005, wrong ones but one at least 0.05 {NAMED}",
     )
     partly: float = tuned(
         0.15,
