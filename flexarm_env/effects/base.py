@@ -96,6 +96,11 @@ class Effect:
         return [typical]
 
     @classmethod
+    def cycles_per_turn(cls, values: Mapping[str, float]) -> float:
+        """Periods of its sine in a turn of the arm; infinite where it is no sine of the arm's angle."""
+        return values.get("cycles", math.inf) if cls.scan_phase else math.inf
+
+    @classmethod
     def size_parameter(cls) -> str:
         """Name of the parameter that says how strong the effect is."""
         return next((key for key, p in cls.parameters.items() if p.null is not None), next(iter(cls.parameters)))

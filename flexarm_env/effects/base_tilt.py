@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import ClassVar
 
 from flexarm_env.effects.base import Effect, torque_size
@@ -20,6 +21,7 @@ class BaseTilt(Effect):
     }
     looks_like = "missing torque is one period of a sine over a full turn of the arm"
     confused_with = ("cable_stiffness", "constant_torque")
+    scan_phase = "uphill"
 
     @staticmethod
     def weight(angle, torque, uphill):
@@ -27,6 +29,11 @@ class BaseTilt(Effect):
         return torque * math.sin(angle - uphill)
 
     @classmethod
+    def cycles_per_turn(cls, values: Mapping[str, float]) -> float:
+        """One: gravity."""
+        return 1.0
+
+    @classmethod
     def starts(cls) -> list[dict[str, float]]:
-        """Four directions of the slope."""
-        return [{"torque": 0.05, "uphill": uphill} for uphill in (-1.5, 0.0, 1.5, 3.0)]
+        """Two directions of the slope, of which every other is a sum."""
+        return [{"torque": 0.05, "uphill": uphill} for uphill in (0.0, 1.57)]

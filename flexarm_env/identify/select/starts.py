@@ -46,11 +46,11 @@ def shows_part_of_period(arm: Arm, effect: str, dataset: Dataset) -> bool:
 
     Such a part of a sine is as smooth as other torques of the angle are.
     """
-    if not arm.known[effect].scan_phase or "arm_angle" not in dataset.signals:
+    if "arm_angle" not in dataset.signals:
         return False
     column = dataset.signals.index("arm_angle")
     widest = max(float(run.extent[column]) for run in dataset.runs)
-    return arm.effects[effect]["cycles"] * widest < 2.0 * math.pi
+    return arm.known[effect].cycles_per_turn(arm.effects[effect]) * widest < 2.0 * math.pi
 
 
 def starts_of(arm: Arm, effect: str, dataset: Dataset) -> list[dict[str, float]]:
