@@ -188,7 +188,8 @@ class Arm(Shown):
         if need == "amplifier":
             return self.input != "position"
         if need == "supply":
-            return self.constants["drive"]["supply_voltage"] > 0.0 and "motor_current" not in self.sensors
+            may_sag = "drive.supply_voltage" not in self.fixed  # a voltage that was measured has sagged already
+            return self.constants["drive"]["supply_voltage"] > 0.0 and may_sag and "motor_current" not in self.sensors
         if need in INPUTS:
             return need == self.input
         if need == "strain":

@@ -83,6 +83,8 @@ def test_an_arm_says_what_it_has():
     assert [arm.has("tip") for arm in (pendulum(), pendulum(length=0.0), Arm.load("thesis"))] == [True, False, True]
     assert [arm.has("soft_gears") for arm in (elastic_joint(), pendulum(), Arm.load("thesis-fem"))] == [True, False, True]
     assert [arm.has("supply") for arm in (servo(), elastic_joint())] == [True, False]
+    known = replace(servo(), fixed=("drive.supply_voltage",))
+    assert [servo().can_have("supply_sag"), known.can_have("supply_sag")] == [True, False], "a voltage measured at the drive"
     measured = elastic_joint().constants | {"sensors": {"arm_angle": {}, "motor_current": {}}}
     measured["drive"] = {"input": "voltage"} | measured["drive"] | {"supply_voltage": 12.0}
     assert not Arm.from_table(measured, "measured").can_have("supply_sag"), "its current is a signal, which sag does not give"

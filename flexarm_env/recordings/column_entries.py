@@ -78,7 +78,7 @@ def _allowed_keys(name: str) -> tuple[str, ...]:
     if name == "time":
         return (*PLACES, *_CONVERSION, *TIME_KEYS, "row", "rate")
     if name not in UNITS:
-        return (*PLACES, *_CONVERSION, "row")
+        return (*PLACES, *_CONVERSION, "row", "mean")
     of_kind = SIGNAL_KEYS if name in known_sensors() else ("value",) if name in INPUTS else ()
     return (*PLACES, *_CONVERSION, *of_kind, "row", "file", "time")
 
@@ -120,7 +120,12 @@ def _part(name: str, key: str, place: Any, unit: Any, entry: Mapping[str, Any]) 
         raise InputError(f"{where}: scale is {scale!r}; write a number that is not zero")
     row = _number_from_zero(name, "row", entry)
     cut = _number_from_zero(name, "index", entry) if key == "variable" else None
-    return Source(place, unit, int(sign), scale, key, row, cut, _file(name, entry), corrections=_corrections(name, entry))
+    mean = entry.get("mean", False)
+    if not isinstance(mean, bool):
+        raise InputError(f"{where}: mean is {mean!r}; write true for the mean of numbers that differ, or leave it out")
+    return Source(
+        place, unit, int(sign), scale, key, row, cut, _file(name, entry), corrections=_corrections(name, entry), mean=mean
+    )
 
 
 def _corrections(name: str, entry: Mapping[str, Any]) -> Corrections:

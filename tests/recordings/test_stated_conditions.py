@@ -49,6 +49,24 @@ def test_a_condition_without_a_unit_is_a_bare_number(tmp_path):
     assert read(tmp_path, TEXT.format(6, 6, 6), columns).conditions == {"trial": 6.0}
 
 
+def test_the_mean_of_numbers_that_differ_is_a_condition_where_it_is_wanted(tmp_path):
+    conditions = {"supply": {"column": "P", "unit": "mV", "mean": True}}
+    found = read(tmp_path, TEXT.format(7200, 7100, 7600), COLUMNS | {"conditions": conditions})
+    assert found.conditions == pytest.approx({"supply": 7.3})
+    assert "condition 'supply' is the mean of 'P', 7300 mV of 7100 to 7600" in found.notes
+    equal = read(tmp_path, TEXT.format(7200, 7200, 7200), COLUMNS | {"conditions": conditions})
+    assert equal.conditions == pytest.approx({"supply": 7.2})
+    assert not equal.notes
+
+
+def test_a_mean_is_true_or_left_out_and_of_a_condition(tmp_path):
+    wrong = COLUMNS | {"conditions": {"K1": {"column": "P", "unit": "V", "mean": "yes"}}}
+    with pytest.raises(InputError, match=r"conditions.K1: mean is 'yes'; write true"):
+        read(tmp_path, TEXT.format(6, 6, 7), wrong)
+    with pytest.raises(InputError, match="arm_angle: unknown key 'mean'"):
+        read(tmp_path, TEXT.format(6, 6, 6), COLUMNS | {"arm_angle": {"column": "phi", "unit": "rad", "mean": True}})
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

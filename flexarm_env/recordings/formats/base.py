@@ -77,22 +77,27 @@ class Format:
                 )
 
     def _with_conditions(self, content: bytes, columns: ColumnMap) -> Table:
-        """Read the columns of conditions beside the others; each must hold one number throughout."""
+        """Read the columns of conditions beside the others; each must hold one number throughout, if its mean is not wanted."""
         table = self.read(content, replace(columns, sources=columns.sources | columns.conditions))
-        conditions = dict(table.conditions)
+        conditions, notes = dict(table.conditions), list(table.notes)
         for name, source in columns.conditions.items():
             numbers = as_vector(name, table.values[name])
             numbers = numbers[~np.isnan(numbers)]  # rows of other topics
-            if not len(numbers) or (numbers != numbers[0]).any():
-                place = quoted(str(source.place))
+            place, differ = quoted(str(source.place)), len(numbers) and bool((numbers != numbers[0]).any())
+            if not len(numbers) or (differ and not source.mean):
                 raise InputError(
-                    f"condition '{name}': {place} is not one number throughout; cut the file in two where it changes"
+                    f"condition '{name}': {place} is not one number throughout; cut the file in two where it changes, "
+                    f"or write mean = true"
                 )
             if name in conditions:
                 raise InputError(f"condition '{name}' comes twice, in [columns] and in the file's remarks; keep one of the two")
-            conditions[name] = base_value(float(numbers[0]), source)
+            number = float(np.mean(numbers)) if differ else float(numbers[0])
+            if differ:
+                spread = f"{numbers.min():.4g} to {numbers.max():.4g}"
+                notes.append(f"condition '{name}' is the mean of {place}, {number:.4g} {source.unit} of {spread}")
+            conditions[name] = base_value(number, source)
         values = {name: numbers for name, numbers in table.values.items() if name not in columns.conditions}
-        return replace(table, values=values, conditions=conditions)
+        return replace(table, values=values, conditions=conditions, notes=tuple(notes))
 
 
 def _with_made(table: Table, made: Mapping[str, Source]) -> Table:
