@@ -48,11 +48,11 @@ class Screening:
     untried: tuple[str, ...] = ()
 
 
-def screen(calibrator: Calibrator, starts: Sequence[Calibration], progress: Progress) -> Screening:
-    """Try every effect from some calibrations, and none, as long as there is time."""
+def screen(calibrator: Calibrator, starts: Sequence[Calibration], progress: Progress, briefly: bool = False) -> Screening:
+    """Try every effect from some calibrations, and none, as long as there is time; briefly where only noise is left."""
     bases = baselines(starts, calibrator.dataset)
     names = candidates(starts[0].arm)
-    tasks = [(try_effect, (base, name)) for name in names for base in bases]
+    tasks = [(try_effect, (base, name, briefly)) for name in names for base in bases]
     trials, number = [attempt(bases[0], None)], 0
     for number, found in enumerate(calibrator.workers.map_in_time(tasks), start=1):
         trials += found
@@ -60,9 +60,9 @@ def screen(calibrator: Calibrator, starts: Sequence[Calibration], progress: Prog
     return Screening(best_trials(trials), tuple(names[number // len(bases) :]))
 
 
-def try_effect(base: Baseline, name: str) -> list[Trial]:
+def try_effect(base: Baseline, name: str, briefly: bool) -> list[Trial]:
     """Fit an effect from its most promising start, if it explains anything."""
-    return [attempt(base, signature) for signature in signatures(base, name)]
+    return [attempt(base, signature) for signature in signatures(base, name, briefly)]
 
 
 def attempt(base: Baseline, signature: Signature | None) -> Trial:

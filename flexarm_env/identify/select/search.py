@@ -73,7 +73,7 @@ class Search:
             return self._stop(trace, _beside("an effect was tried", trace))
         screening, fitting, more = progress.split(6, 1, 3)
         starts = starts_of_search(self.calibrator, self.criteria, trace.model)
-        screened = screen(self.calibrator, starts, screening)
+        screened = screen(self.calibrator, starts, screening, briefly=sufficient)
         if not trace.ranking:
             trace = trace.then("screen", tried=_gains_of_screening(screened.trials))
         if screened.untried:

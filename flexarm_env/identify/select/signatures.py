@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -47,6 +49,21 @@ class Baseline:
     def numbers(self) -> Screening:
         """Numbers of the screening."""
         return self.objective.dataset.settings.screening
+
+    @functools.cached_property
+    def left(self) -> Floats:
+        """The part of the residual (rows,) that no change of the values explains."""
+        return self.unexplained(self.residual)
+
+    @functools.cached_property
+    def left_square(self) -> float:
+        """Sum of its squares."""
+        return float(self.left @ self.left)
+
+    def square_unexplained(self, residual: Floats) -> float:
+        """Compute the sum of squares of the part of a residual (rows,) that no change of the values explains."""
+        along = self.orthonormal.T @ residual
+        return float(residual @ residual - along @ along)
 
     def unexplained(self, residual: Floats) -> Floats:
         """Project a residual (rows,) onto the complement of the changes that the constants could make."""
@@ -113,14 +130,18 @@ def baseline_of(objective: Objective, steps: Floats) -> Baseline:
     return Baseline(objective, x, residual, slopes, orthonormal)
 
 
-def signatures(base: Baseline, effect: str) -> list[Signature]:
+def signatures(base: Baseline, effect: str, briefly: bool = False) -> list[Signature]:
     """Find the most promising start of an effect, if it explains anything of the residual.
 
     The effect's own starts are ranked by a finite secant. The best are tried at the size that it gives.
+
+    Args:
+        base: the arm without the effect.
+        effect: its name.
+        briefly: whether the secants' promises stand untried, as where only noise is left.
     """
-    numbers = base.numbers
-    left = base.unexplained(base.residual)
-    size = float(np.linalg.norm(left))
+    numbers, left = base.numbers, base.left
+    size = math.sqrt(base.left_square)
 
     def change_by(values: dict[str, float]) -> Floats:
         return base.unexplained(base.change(effect, values))
@@ -131,7 +152,9 @@ def signatures(base: Baseline, effect: str) -> list[Signature]:
     secants = [_secant(base, effect, start, change, left) for start, change in changes]
     secants += _with_phases_between(base, effect, changes, left)
     secants.sort(key=lambda s: -s.explained)
-    best = max((_at_its_size(base, s) for s in secants[: numbers.starts_scanned]), key=lambda s: s.explained)
+    if not briefly:
+        secants = [_at_its_size(base, secant) for secant in secants[: numbers.starts_scanned]]
+    best = max(secants, key=lambda s: s.explained)
     return [best] if best.explained > numbers.least_explained else []
 
 
@@ -204,6 +227,5 @@ def _factors(base: Baseline, signature: Signature) -> tuple[float, ...]:
 
 def _at_size(base: Baseline, signature: Signature, factor: float) -> Signature:
     values = sized(base.arm, signature.effect, signature.start, factor)
-    left = base.unexplained(base.objective.residual_of(base.arm.with_effect(signature.effect, **values)))
-    before = base.unexplained(base.residual)
-    return Signature(signature.effect, values, 1.0 - float(left @ left) / float(before @ before))
+    left = base.square_unexplained(base.objective.residual_of(base.arm.with_effect(signature.effect, **values)))
+    return Signature(signature.effect, values, 1.0 - left / base.left_square)
