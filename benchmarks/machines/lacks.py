@@ -33,7 +33,7 @@ def effects(draw: Rng, machine: Model, planned: tuple[Run, ...], kind: str) -> t
             continue
         sized = [_sized(draw, yard, name) for name in chosen]
         found = tuple(one for one in sized if one is not None)
-        if len(found) == len(sized) and _differ(yard, found):
+        if len(found) == len(sized) and _differ(Yardstick(machine, planned, found), found):
             return found
     return None
 
@@ -80,6 +80,6 @@ def _sized(draw: Rng, yard: Yardstick, name: str) -> Sized | None:
 
 
 def _differ(yard: Yardstick, found: tuple[Sized, ...]) -> bool:
-    """Whether each of several effects shows beside the others."""
+    """Whether each of several effects shows beside the others, under the commands of the machine that has all."""
     signatures = [yard.signature(sized) for sized in found] if len(found) > 1 else []
     return all(yard.left(own, signatures[:i] + signatures[i + 1 :]) >= LEAST for i, own in enumerate(signatures))

@@ -6,6 +6,7 @@ difference of two runs the motion is taken out that follows from its angle and s
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -26,8 +27,11 @@ Floats = NDArray[np.float64]
 WINDOW, START = 1.0, 0.15
 #: Samples per second that are compared at most [Hz]; share of a prior's standard deviation by which a constant is moved.
 RATE, STEP = 100.0, 0.3
-#: Factor and step [Nm or rad] by which the weight of a link and its direction are moved.
-WEIGHT = {"effects.base_tilt.torque": (1.01, 0.0), "effects.base_tilt.uphill": (1.0, 0.01)}
+#: Step by which the weight of a link, as a logarithm, and its direction [rad] are moved.
+WEIGHT_STEP = 0.01
+WEIGHT, DIRECTION = "effects.base_tilt.torque", "effects.base_tilt.uphill"
+#: Difference over the noise beyond which a slope is taken from a smaller step.
+MODERATE = 30.0
 #: Relative tolerance of a strength; largest number of trials; weakest size that is tried over the largest.
 NEAR, TRIALS, WEAKEST = 0.15, 12, 1e-6
 
@@ -38,12 +42,16 @@ class Yardstick:
     Args:
         machine: with its true constants.
         runs: its experiments.
+        hidden: the effects under which a loop gave the commands.
     """
 
-    def __init__(self, machine: Model, runs: Sequence[Run]) -> None:
-        self.machine, self.rates = machine, [run.rate for run in runs]
+    def __init__(self, machine: Model, runs: Sequence[Run], hidden: Sequence[Sized] = ()) -> None:
+        self.machine, self.runs, self.rates = machine, runs, [run.rate for run in runs]
         self.noise = np.array([machine.arm.reading_noise(signal) for signal in machine.arm.sensors])
-        self.commands = [record(machine, run).command for run in runs]
+        self.spreads = spreads(machine)
+        self.free = [path for path in (WEIGHT, DIRECTION) if path in machine.values]
+        present = [sized.settings(machine) for sized in hidden]
+        self.commands = [record(machine, run, present).command for run in runs]
         self.without = [self._read(machine, i, ()) for i in range(len(runs))]
 
     def _read(self, machine: Model, place: int, effects: Sequence[dict[str, float]]) -> tuple[Floats, Floats]:
@@ -85,22 +93,32 @@ class Yardstick:
     @cached_property
     def weight(self) -> Floats:
         """Differences (readings, 2 or 0) by the weight of a link and by its direction, which a fit moves without a prior."""
-        found = []
-        for path, sizes in WEIGHT.items():
-            if path in self.machine.values:
-                value = self.machine.values[path]
-                moved = with_values(self.machine, {path: value * sizes[0] + sizes[1]})
-                found.append(self.difference(moved))
+        found = [self._slope(path, WEIGHT_STEP) for path in self.free]
         return np.stack(found, axis=1) if found else np.zeros((len(self.constants), 0))
 
     @cached_property
     def constants(self) -> Floats:
         """Differences (readings, constants) by one standard deviation of the prior of each constant that a fit moves."""
-        columns = []
-        for path, spread in spreads(self.machine).items():
-            moved = with_values(self.machine, {path: self.machine.values[path] * float(np.exp(STEP * spread))})
-            columns.append(self.difference(moved, sensor=path.startswith("sensors.")) / STEP)
-        return np.stack(columns, axis=1)
+        return np.stack([self._slope(path, STEP) for path in self.spreads], axis=1)
+
+    def _slope(self, path: str, step: float) -> Floats:
+        """Compute the difference (readings,) by a unit of a value, from a step that changes readings about as effects do.
+
+        With a larger one the hub sticks at other times.
+        """
+        sensor = path.startswith("sensors.")
+        change = self.difference(self.moved(path, step), sensor=sensor)
+        if rms(change) > MODERATE:
+            step *= MODERATE / rms(change)
+            change = self.difference(self.moved(path, step), sensor=sensor)
+        return change / step
+
+    def moved(self, path: str, step: float) -> Model:
+        """Move a constant by standard deviations of its prior, a weight by a logarithm, or its direction by an angle [rad]."""
+        value = self.machine.values[path]
+        return with_values(
+            self.machine, {path: value + step if path == DIRECTION else value * math.exp(step * self.spreads.get(path, 1.0))}
+        )
 
     def signature(self, sized: Sized) -> Floats:
         """Compute the difference (readings,) that an effect makes."""
@@ -112,7 +130,16 @@ class Yardstick:
         columns = np.hstack([self.constants, free])
         priors = np.diag(np.r_[np.ones(self.constants.shape[1]), np.zeros(free.shape[1])])
         moves = np.linalg.lstsq(np.vstack([columns, priors]), np.r_[difference, np.zeros(len(priors))])[0]
-        return float(np.sqrt(np.mean((difference - columns @ moves) ** 2)))
+        return rms(difference - columns @ moves)
+
+    def strength(self, sized: Sized) -> float:
+        """Compute the rms of what constants cannot make up for of an effect."""
+        return self.left(self.signature(sized))
+
+
+def rms(difference: Floats) -> float:
+    """Compute the root of the mean square."""
+    return float(np.sqrt(np.mean(difference**2)))
 
 
 def carried_on(machine: Model, count: int, rate: float) -> Floats:
@@ -130,12 +157,17 @@ def carried_on(machine: Model, count: int, rate: float) -> Floats:
 
 
 def find_size(yard: Yardstick, sized: Sized, wanted: float) -> Sized | None:
-    """Find the size at which an effect of the largest plausible size is as strong as wanted; None where it never is."""
+    """Find the size at which an effect of the largest plausible size is as strong as wanted; None where it never is.
+
+    Its strength is that under the commands of the machine that has it: a loop drives through a dead zone, and past a limit.
+    """
     low, high = np.log(WEAKEST), 0.0  # logarithms of the share of that size
     share = 0.0
     for _ in range(TRIALS):
-        made = replace(sized, size=sized.size * float(np.exp(share)))
-        strength = yard.left(yard.signature(made))
+        made = replace(sized, size=sized.size * math.exp(share))
+        strength = yard.strength(made)
+        if abs(strength - wanted) < NEAR * wanted:
+            strength = Yardstick(yard.machine, yard.runs, (made,)).strength(made)
         if abs(strength - wanted) < NEAR * wanted:
             return replace(made, strength=strength)
         low, high = (low, share) if strength > wanted else (share, high)
