@@ -16,7 +16,7 @@ class Cogging(Effect):
     equation = "τ = a sin(nθ + φ)"
     parameters: ClassVar = {
         "amplitude": torque_size("size of the torque, arm side", 0.05),
-        "cycles": Parameter("1/rad", 2.5, 200.0, 9.0, meaning="n, cycles per radian of the arm times 2π"),
+        "cycles": Parameter("1/rad", 2.5, 5e3, 9.0, meaning="n, cycles per radian of the arm times 2π"),
         "phase": Parameter("rad", -6.3, 6.3, 0.0, meaning="φ, at angle zero"),
     }
     looks_like = "missing torque repeats with the angle, the same for both directions; rest angles bunch"

@@ -16,8 +16,8 @@ class FixtureCompliance(Effect):
     name = "fixture_compliance"
     equation = "J_f φ'' + k (φ + T φ') = −torque of the drive, arm turns by θ + φ"
     parameters: ClassVar = {
-        "stiffness": Parameter("N*m/rad", 0.01, math.inf, 300.0, null=math.inf, meaning="k, of table or stand"),
-        "inertia": Parameter("kg*m**2", 1e-6, 1e4, 0.05, meaning="J_f, of all that turns with the stator"),
+        "stiffness": Parameter("N*m/rad", 1e-6, math.inf, 300.0, null=math.inf, meaning="k, of table or stand"),
+        "inertia": Parameter("kg*m**2", 1e-9, 1e4, 0.05, meaning="J_f, of all that turns with the stator"),
         "damping_time": Parameter("s", 1e-6, 1.0, 1e-3, meaning="T, damping over k"),
     }
     looks_like = "a vibration that the arm's own parts do not have, with the hub held as well"

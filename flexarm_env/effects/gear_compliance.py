@@ -16,7 +16,7 @@ class GearCompliance(Effect):
     name = "gear_compliance"
     equation = "τ = k (ε + T dε/dt), ε = θ_m/N − θ"
     parameters: ClassVar = {
-        "stiffness": Parameter("N*m/rad", 0.01, math.inf, 200.0, null=math.inf, meaning="k, arm side"),
+        "stiffness": Parameter("N*m/rad", 1e-6, math.inf, 200.0, null=math.inf, meaning="k, arm side"),
         "damping_time": Parameter("s", 1e-6, 1.0, 5e-4, meaning="T, damping of the windup over k"),
     }
     looks_like = "motor speed shows a fast vibration against the arm"

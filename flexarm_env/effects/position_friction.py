@@ -16,7 +16,7 @@ class PositionFriction(Effect):
     equation = "T = a sin(nθ + φ)"
     parameters: ClassVar = {
         "amplitude": torque_size("size of the change, arm side", 0.05),
-        "cycles": Parameter("1/rad", 0.05, 100.0, 3.0, meaning="n, cycles of the sine per radian times 2π"),
+        "cycles": Parameter("1/rad", 0.05, 5e3, 3.0, meaning="n, cycles of the sine per radian times 2π"),
         "phase": Parameter("rad", -6.3, 6.3, 0.0, meaning="φ, at angle zero"),
     }
     modifies = "coulomb"

@@ -16,7 +16,7 @@ class PotNonlinearity(Effect):
     equation = "y = θ + a sin(nθ + φ)"
     parameters: ClassVar = {
         "amplitude": Parameter("rad", 0.0, 1.0, 0.02, null=0.0, meaning="a, largest error"),
-        "cycles": Parameter("1/rad", 0.3, 30.0, 2.0, meaning="n, cycles per radian of the arm times 2π"),
+        "cycles": Parameter("1/rad", 0.3, 5e3, 2.0, meaning="n, cycles per radian of the arm times 2π"),
         "phase": Parameter("rad", -6.3, 6.3, 0.0, meaning="φ, at angle zero"),
     }
     looks_like = "angle alone has an error that is periodic in the angle; speed and strain fit"

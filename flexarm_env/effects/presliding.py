@@ -14,7 +14,7 @@ class Presliding(Effect):
 
     name = "presliding"
     equation = "dT/dθ = (1 − T/T_c sgn ω) / c"
-    parameters: ClassVar = {"compliance": Parameter("rad/N/m", 0.0, 1.0, 2e-3, null=0.0, meaning="c, of friction at rest")}
+    parameters: ClassVar = {"compliance": Parameter("rad/N/m", 0.0, 1e4, 2e-3, null=0.0, meaning="c, of friction at rest")}
     modifies = "coulomb"
     looks_like = "the hub rings where it should stick, and creeps back a little after it has stopped"
     confused_with = ("gear_compliance", "stiction")

@@ -15,7 +15,7 @@ class RootCompliance(Effect):
     name = "root_compliance"
     equation = "root slope = C · moment"
     parameters: ClassVar = {
-        "compliance": Parameter("rad/N/m", 0.0, 10.0, 0.005, null=0.0, meaning="C, slope per moment at the root")
+        "compliance": Parameter("rad/N/m", 0.0, 1e4, 0.005, null=0.0, meaning="C, slope per moment at the root")
     }
     looks_like = "all frequencies lie low, the clamped one the most"
     confused_with = ("payload", "higher_modes", "gear_compliance")

@@ -16,7 +16,7 @@ class ShearThinning(Effect):
     equation = "T = b ω / √(1 + |ω|/ω₀)"
     parameters: ClassVar = {
         "coefficient": Parameter("N*m*s", 0.0, 1e5, 0.05, null=0.0, meaning="b, friction per speed at rest"),
-        "knee": Parameter("rad/s", 1e-3, 1e3, 0.5, meaning="ω₀, speed from which friction grows as the root of the speed"),
+        "knee": Parameter("rad/s", 1e-6, 1e3, 0.5, meaning="ω₀, speed from which friction grows as the root of the speed"),
     }
     looks_like = (
         "friction grows with speed, but less and less: viscous friction is too low at low speed and too high at high speed"

@@ -16,7 +16,7 @@ class Stribeck(Effect):
     equation = "T = extra · exp(−(ω/v)²)"
     parameters: ClassVar = {
         "extra": torque_size("friction at rest above that at speed, arm side", 0.1),
-        "falloff_speed": Parameter("rad/s", 1e-3, 20.0, 0.2, meaning="speed v over which it falls"),
+        "falloff_speed": Parameter("rad/s", 1e-6, 20.0, 0.2, meaning="speed v over which it falls"),
     }
     modifies = "coulomb"
     looks_like = "missing torque is a bump around zero speed; stick-slip at creeping speed"

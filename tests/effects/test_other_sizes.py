@@ -56,6 +56,19 @@ def arm(request) -> Arm:
 
 
 @pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("force", [1e-4, 1e3])
+@pytest.mark.parametrize("turn", [1e-2, 1.0])
+def test_its_bounds_hold_what_small_and_large_machines_have(name, force, turn):
+    """A small joint has 1e-4 of the thesis's torque, and a screw, of which a metre stands for a radian, a hundredth of its turn."""
+    turns = {"rad/s": 1, "1/rad": -1, "N*m/rad": -1, "rad/N/m": 1, "N*m*s": -1}
+    for key, p in catalogue()[name].parameters.items():
+        size = p.typical * force ** force_power(p.unit) * turn ** turns.get(p.unit, 0)
+        assert p.low <= size <= p.high, (key, size)
+        assert p.null != math.inf or p.low <= 1e-2 * size, "a spring may be a hundred times softer than is typical"
+        assert p.unit != "rad/N/m" or p.high >= 1e2 * size, "and a compliance as much larger"
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_it_moves_as_a_lighter_one_does(arm, name):
     if name not in arm.effects and not arm.can_have(name):
         pytest.skip(f"arm '{arm.name}' cannot have it")
