@@ -59,7 +59,7 @@ def arm(request) -> Arm:
 @pytest.mark.parametrize("force", [1e-4, 1e3])
 @pytest.mark.parametrize("turn", [1e-2, 1.0])
 def test_its_bounds_hold_what_small_and_large_machines_have(name, force, turn):
-    """A small joint has 1e-4 of the thesis's torque, and a screw, of which a metre stands for a radian, a hundredth of its turn."""
+    """A small joint has 1e-4 of the torque of the thesis, and a screw of 1 m for a radian a hundredth of its turn."""
     turns = {"rad/s": 1, "1/rad": -1, "N*m/rad": -1, "rad/N/m": 1, "N*m*s": -1}
     for key, p in catalogue()[name].parameters.items():
         size = p.typical * force ** force_power(p.unit) * turn ** turns.get(p.unit, 0)
