@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Callable, Mapping
 from typing import ClassVar
 
 from flexarm_env.parameters import Parameter
+from flexarm_env.plant.ports import PORT_ARGUMENTS
 
 
 class Effect:
@@ -77,6 +79,12 @@ class Effect:
         """Look up the function of a port, or None."""
         found: Callable[..., float] | None = getattr(cls, name, None)
         return found
+
+    @classmethod
+    def quantities(cls) -> int:
+        """Number of quantities, such as angle, speed and time, on which its laws depend; linear terms depend on none."""
+        ports = [function for name in PORT_ARGUMENTS if (function := cls.port(name))]
+        return sum(len(set(inspect.signature(function).parameters) - set(cls.parameters)) for function in ports)
 
     @classmethod
     def absent(cls, values: Mapping[str, float]) -> bool:

@@ -39,6 +39,12 @@ class Model:
         """Whether the size of one of its effects ran to the end of its range: none explains the data."""
         return sizes_at_bound(self.arm, self.calibration.parameters, self.effects)
 
+    @property
+    def quantities(self) -> int:
+        """Number of quantities, such as angle, speed and time, on which the laws of its effects depend."""
+        known = self.arm.known
+        return sum(known[name].quantities() for name in self.effects)
+
     def error_over(self, other: Model) -> float:
         """Compute the ratio of its errors in windows to those of another, on the fitted or the held-out part, the larger one."""
         pairs = ((self.score, other.score), (self.fitted_score, other.fitted_score))

@@ -65,7 +65,8 @@ def find_rivals(
     most = left + criteria.equivalent_difference(removed, left)
     ranked = sorted([m for m in better if measure(m.score) <= most], key=rank)
     best = next(pair for pair in zip(first, again, strict=True) if ranked[0] in pair)
-    simplest = _simplest(ranked, max(calibrator.settings.errors.converged, spread(*best)))
+    errors = calibrator.settings.errors
+    simplest = _simplest(ranked, max(errors.converged, spread(*best)), errors.same)
     return Rivals((simplest, *(m for m in ranked if m is not simplest)), measure, tuple(better))
 
 
@@ -77,12 +78,22 @@ def spread(one: Model, other: Model) -> float:
     return max(one.error_over(other), other.error_over(one))
 
 
-def is_simpler_and_as_good(model: Model, other: Model, most: float) -> bool:
-    """Whether a model has fewer numbers than another, and an error that is larger by a ratio of no more than `most`."""
-    return len(model.calibration.parameters) < len(other.calibration.parameters) and model.error_over(other) <= most
+def is_simpler_and_as_good(model: Model, other: Model, most: float, same: float) -> bool:
+    """Whether a model has fewer numbers than another, or as many and laws of fewer quantities, and an error that is no larger.
+
+    Args:
+        model: the one in question.
+        other: to which it is compared.
+        most: ratio of the errors up to which fewer numbers are as good.
+        same: ratio up to which two models move alike, so that nothing but their laws tells them apart.
+    """
+    numbers, others = (len(m.calibration.parameters) for m in (model, other))
+    if numbers == others:
+        return model.quantities < other.quantities and model.error_over(other) <= same
+    return numbers < others and model.error_over(other) <= most
 
 
-def _simplest(ranked: Sequence[Model], most: float) -> Model:
+def _simplest(ranked: Sequence[Model], most: float, same: float) -> Model:
     """Choose the simplest of the models that are as good as the first one."""
-    every = [ranked[0], *(m for m in ranked if is_simpler_and_as_good(m, ranked[0], most))]
-    return min(every, key=lambda m: len(m.calibration.parameters))
+    every = [ranked[0], *(m for m in ranked if is_simpler_and_as_good(m, ranked[0], most, same))]
+    return min(every, key=lambda m: (len(m.calibration.parameters), m.quantities))

@@ -65,9 +65,10 @@ def compare_rivals(
     rivals[0] = _polish_near(calibrator, rivals[0], now)
     first = rivals[0]
     rival, own, alike_to = _on_all_data(calibrator, first, now)
-    better = criteria.replaces(rival, own, rank) and not is_simpler_and_as_good(own, rival, alike_to)
+    same = calibrator.settings.errors.same
+    better = criteria.replaces(rival, own, rank) and not is_simpler_and_as_good(own, rival, alike_to, same)
     is_equivalent = measure(rival.score) <= criteria.equivalence_level(own.score, measure)
-    better = better or (is_equivalent and is_simpler_and_as_good(rival, own, alike_to))
+    better = better or (is_equivalent and is_simpler_and_as_good(rival, own, alike_to, same))
     if replace(now, effects=(effect,)).at_bound:  # no size of it explains the data
         better = better or measure(first.score) <= criteria.equivalence_level(now.score, measure)
     models = {effect: now} | {m.effects[0]: m for m in rivals}

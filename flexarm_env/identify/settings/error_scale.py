@@ -11,6 +11,11 @@ from flexarm_env.identify.settings.number import tuned
 class ErrorScale:
     """Rungs of one ladder: the error of a model over the noise."""
 
+    same: float = tuned(
+        1.00001,
+        "Ratio of the errors of two models below which they move alike.",
+        "a constant torque and friction that differs by direction agree to 1e-7 on an axis that never rests",
+    )
     converged: float = tuned(
         1.002,
         "Ratio of the errors of two ends of one calibration, or of two models, below which neither is better.",
