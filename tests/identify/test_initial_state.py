@@ -103,6 +103,21 @@ def test_no_command_acts_before_the_first_where_the_arm_rests(effect, value) -> 
     assert error(arm, simulate(arm, given)) < 1.2
 
 
+@pytest.mark.parametrize(("effect", "value"), [("input_delay", {"delay": 0.0025}), ("time_offset", {"offset": 0.0025})])
+def test_no_command_acts_before_the_first_of_an_arm_that_leaves_at_once(effect, value) -> None:
+    """A quick axis, whose angle alone is measured, moves by many counts between two samples: it seems to have moved before."""
+    drive = {"input": "torque", "limit": 4.0, "gear_ratio": 1.0}
+    axis = {"drive": drive, "hub": {"inertia": 2e-3}, "sensors": {"arm_angle": {"resolution": 1e-4, "noise": 1e-4}}}
+    arm = Arm.from_table(axis | {"effects": {"viscous": {"coefficient": 0.005}}}, "axis").with_effect(effect, **value)
+    time = np.arange(0.0, 4.0, 0.008)
+    command = 0.7 * np.cos(2.0 * np.pi * 0.9 * time)
+    asked = Recording.from_arrays("run", time, "torque", command, {"arm_angle": np.zeros(len(time))})
+    recording = simulate(arm, asked, seed=1)
+    _, data = prepare(arm, [recording])
+    assert data.runs[0].start.moving
+    assert error(arm, recording) < 1.3
+
+
 def test_a_tachometer_alone_shows_that_the_arm_moves_at_the_start() -> None:
     arm = motor_alone()
     assert error(arm, cut(simulate(arm, "pulse", duration=3.0), 0.9, ["motor_speed"])) < 1.5

@@ -59,10 +59,9 @@ class Stretch:
     settings: InitialStates
     loop: Loop | None = None
 
-    @property
-    def command_before(self) -> float:
+    def command_before(self, at_rest: bool) -> float:
         """The command before the first sample: none at rest, where states that lag behind commands begin at zero."""
-        return float(self.command[0]) if self.start.moving else 0.0
+        return float(self.command[0]) if self.start.moving and not at_rest else 0.0
 
     def fit(self, plant: Plant) -> StartFit:
         """Fit the state of a plant to the stretch: the hub and the slowest mode of the beam first, then the faster ones too."""
@@ -95,7 +94,7 @@ class Stretch:
     def place(self, plant: Plant, fitted: StartFit) -> None:
         """Put a plant into a fitted state."""
         basis = self._basis(plant) if len(fitted.moves) and not fitted.at_rest else np.zeros((0, plant.states))
-        plant.place(self._state(plant, basis, fitted), self.command_before)
+        plant.place(self._state(plant, basis, fitted), self.command_before(fitted.at_rest))
 
     def directions(self, plant: Plant) -> int:
         """Count the directions along which the state of a plant is fitted."""
@@ -114,9 +113,9 @@ class Stretch:
             return np.asarray(start.rest * hub[0])
         return np.asarray(np.array([start.angle, start.speed]) @ hub + fitted.moves @ basis)
 
-    def _residual(self, plant: Plant, state: Floats) -> Floats:
+    def _residual(self, plant: Plant, state: Floats, at_rest: bool = False) -> Floats:
         """Compute the error of every reading over its standard deviation (rows,); 0 where nothing was measured."""
-        plant.place(state, self.command_before)
+        plant.place(state, self.command_before(at_rest))
         if self.loop is None:
             readings = plant.replay(self.command, self.intervals, NO_GAINS, NOT_MEASURED)
         else:
@@ -125,8 +124,8 @@ class Stretch:
 
     def _is_likelier_than_rest(self, plant: Plant, basis: Floats, fitted: StartFit) -> bool:
         """Whether the fitted state meets the stretch better than rest by more than chance: gages may have offsets."""
-        states = (self._state(plant, basis, replace(fitted, at_rest=at_rest)) for at_rest in (True, False))
-        left, best = (float(np.sum(self._residual(plant, state) ** 2)) for state in states)
+        states = [(self._state(plant, basis, replace(fitted, at_rest=at_rest)), at_rest) for at_rest in (True, False)]
+        left, best = (float(np.sum(self._residual(plant, *state) ** 2)) for state in states)
         significant = self.settings.significant**2 * max(1.0, best / count_of(self.measured))
         return left - best > significant
 
