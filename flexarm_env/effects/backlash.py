@@ -27,5 +27,5 @@ class Backlash(Effect):
 
     @classmethod
     def starts(cls) -> list[dict[str, float]]:
-        """A narrow and a wide gap: the error has local minima in between."""
-        return [{"gap": gap} for gap in (0.02, 0.05)]
+        """Narrow and wide gaps: the error has local minima in between."""
+        return [{"gap": gap} for gap in (0.02, 0.05, 0.2)]

@@ -52,7 +52,7 @@ class Search:
             longer = self.add(trace, adding)
             added, trace = len(longer.accepted) > len(trace.accepted), longer
             if added and len(trace.accepted) > 1:  # an effect in the wrong place calls for one more
-                trace = self.swap(trace, exchanging)
+                trace = self.swap(trace, exchanging, untried=trace.steps[-1].action == "combine")
             if not added or len(trace.accepted) >= most:
                 break
         if len(trace.accepted) == 1:
