@@ -351,6 +351,8 @@ def run(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Run from rest with command = feed + P (target - angle) - D speed on measured signals, held per sample.
 
+    A servo has the motor's own angle in the place of the measured one, arm side and without noise.
+
     Args:
         gains: P [A/rad], D [A s/rad], limit of the command [A]; V in place of A where commands are voltages.
         feed: [A], (n,). target: [rad], (n,). noise: added before rounding, (n, 5).
@@ -373,7 +375,8 @@ def run(
         late = max(k - q.late_samples, 0)
         for c in range(5):
             shown[k, c] = quantise(clean[late, c] + noise[k, c], lsb[c])
-        u = feed[k] + gains[0] * (target[k] - shown[k, 0]) - gains[1] * shown[k, 1]
+        angle = s[TM] / p.gear if p.servo > 0.0 else shown[k, 0]
+        u = feed[k] + gains[0] * (target[k] - angle) - gains[1] * shown[k, 1]
         command[k] = min(max(u, -gains[2]), gains[2])
         current = interval(k, s, eta, rate, p, q, beam, command, force, clean[k + 1])
     return command, shown, truth

@@ -10,7 +10,7 @@ PAR = """
     vs asym asymv posf posn posphi warm warm_tau loadf dahl bias cable cable0 tilt_torque tilt_dir
     cog cogn cogphi drag lag dead sat rate brush backemf ra hum humf humphi fix_w2 fix_c fix_j
     torque_ripple torque_ripple_n detent detent_n detent_period stiff_drift temp_step temp_time
-    amp_hyst spot spot_at spot_width joined volts stop stop_at sag split jk
+    amp_hyst spot spot_at spot_width joined volts stop stop_at sag split jk servo
 """.split()  # noqa: SIM905
 
 #: sensors: gains, faults and the converters' steps

@@ -34,6 +34,7 @@ CONSTANTS = {
     "joined": (0.0, "1", "1: the motor is rigidly on the hub, and all friction with it"),
     "split": (0.0, "1", "1: a step in which a body stands still is split there; 0: it errs by the friction of one step"),
     "volts": (0.0, "1", "1: commands are voltages [V] at the armature, and so are the amplifier's settings"),
+    "servo": (0.0, "1", "1: the loop's angle is that of the motor"),
     "weight": (0.0, "Nm", "torque of gravity about the hub of a rigid arm where it points sideways"),
 }
 
