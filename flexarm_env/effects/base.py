@@ -104,11 +104,6 @@ class Effect:
         return [typical]
 
     @classmethod
-    def starts_within(cls, least: float, largest: float) -> list[dict[str, float]]:
-        """The same where the arm turned from a least to a largest angle [rad]."""
-        return cls.starts()
-
-    @classmethod
     def cycles_per_turn(cls, values: Mapping[str, float]) -> float:
         """Periods of its sine in a turn of the arm; infinite where it is no sine of the arm's angle."""
         return values.get("cycles", math.inf) if cls.scan_phase else math.inf

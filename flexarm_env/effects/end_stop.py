@@ -33,10 +33,6 @@ class EndStop(Effect):
         return 0.0
 
     @classmethod
-    def starts_within(cls, least: float, largest: float) -> list[dict[str, float]]:
-        """Stops of which the motion reaches the rubber's start, or goes far into it."""
-        middle, half = 0.5 * (largest + least), 0.5 * (largest - least)
-        return [
-            {"stiffness": 20.0, "upper": middle + share * half, "lower": middle - share * half, "damping_time": 2e-3}
-            for share in (0.95, 0.8, 0.5)
-        ]
+    def starts(cls) -> list[dict[str, float]]:
+        """Narrow and wide ranges."""
+        return [{"stiffness": 20.0, "upper": place, "lower": -place, "damping_time": 2e-3} for place in (0.3, 0.6, 1.2)]

@@ -1,4 +1,4 @@
-"""Effects of the angle start from the phase, the direction and the places that the recordings show."""
+"""Effects that repeat with the angle start from the phase that the recordings show."""
 
 from __future__ import annotations
 
@@ -53,21 +53,6 @@ def test_a_tilt_starts_from_its_direction(axis, uphill):
     (found,) = signatures(baseline(Calibrator(nominal, data).uncalibrated(nominal), data), "base_tilt")
     assert abs(math.remainder(found.start["uphill"] - uphill, 2.0 * math.pi)) < 0.6
     assert found.start["torque"] == pytest.approx(0.003, rel=0.5)
-
-
-@pytest.mark.parametrize("size", [1.0, 0.02])
-def test_stops_start_within_the_motion(axis, size):
-    """However far a machine moves: a soft stop that only the ends of its motion reach is sought there."""
-    without = axis.without_effect("viscous").with_values({"hub.inertia": 0.02 / size})
-    free = recorded(without).signals["arm_angle"]
-    least, largest = float(free.min()), float(free.max())
-    stop = {"upper": 0.2 * least + 0.8 * largest, "lower": 0.8 * least + 0.2 * largest}
-    recording = recorded(without.with_effect("end_stop", stiffness=0.02 / (largest - least), damping_time=0.0, **stop))
-    nominal, data = prepare(without, [recording])
-    (found,) = signatures(baseline(Calibrator(nominal, data).uncalibrated(nominal), data), "end_stop")
-    measured = recording.signals["arm_angle"]
-    assert measured.min() < found.start["lower"] < found.start["upper"] < measured.max()
-    assert found.explained > 0.05
 
 
 @pytest.mark.parametrize(

@@ -61,22 +61,12 @@ def starts_of(arm: Arm, effect: str, dataset: Dataset) -> list[dict[str, float]]
         sizes = {signal: min(float(deviation), known.parameters[signal].high) for signal, deviation in noise.items()}
         sensors = [{key: (sizes[key] if key == signal else 0.0) for key in known.parameters} for signal in sizes]
         return [start for _ in known.starts() for start in sensors]
-    return [_scaled(arm, effect, start, dataset) for start in _own_starts(arm, effect, dataset)]
+    return [_scaled(arm, effect, start, dataset) for start in known.starts()]
 
 
 def first_start(arm: Arm, effect: str, dataset: Dataset) -> dict[str, float]:
     """Choose the values from which an effect is tried first."""
-    return _scaled(arm, effect, _own_starts(arm, effect, dataset)[0], dataset)
-
-
-def _own_starts(arm: Arm, effect: str, dataset: Dataset) -> list[dict[str, float]]:
-    """List the starts that an effect states, within the range of the recorded angles where they were measured."""
-    known = arm.known[effect]
-    if "arm_angle" not in dataset.signals:
-        return known.starts()
-    column = dataset.signals.index("arm_angle")
-    angles = [run.measured[:, column] for run in dataset.runs]
-    return known.starts_within(float(min(map(np.nanmin, angles))), float(max(map(np.nanmax, angles))))
+    return _scaled(arm, effect, arm.known[effect].starts()[0], dataset)
 
 
 def changes_in_proportion(
