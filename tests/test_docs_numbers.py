@@ -22,6 +22,7 @@ from benchmarks.hidden_effects.score import Figure, figures
 RESULTS = PROJECT / "results"
 HIDDEN = RESULTS / "hidden_effects" / "diagnose-8"
 MACHINES = RESULTS / "machines" / "seed-138948"
+SERVOS = RESULTS / "elastic_joint" / "seed-414678"
 
 
 def demo_table(numbers: str) -> str:
@@ -227,6 +228,7 @@ TABLES = (
     Table("machines", PROJECT / "docs" / "machines.md", MACHINES / "table.md", hidden_effects_table),
     Table("methods", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.json", methods_table),
     Table("rigs", PROJECT / "docs" / "rigs.md", RESULTS / "rigs" / "rigs.json", rigs_tables),
+    Table("elastic joint", PROJECT / "docs" / "rigs.md", SERVOS / "table.md", hidden_effects_table),
     Table("recipes", PROJECT / "docs" / "learning.md", RESULTS / "recipe" / "recipe.md", lines_with("| observation")),
     Table("references", PROJECT / "docs" / "learning.md", RESULTS / "recipe" / "recipe.md", lines_with("| agent")),
     Table("versions", PROJECT / "CONTRIBUTING.md", RESULTS / "versions" / "versions.json", versions_table),

@@ -185,11 +185,15 @@ class Calibrator:
                 break
             other = self.calibrate(found.arm, levels)
             then = self.score(other.arm, held_out=False)
-            if then.is_better_than(now):
+            if then.is_better_than(now) and not self._is_worse_held_out(other, found):
                 found, now = other, then
             elif not near:
                 break
         return found
+
+    def _is_worse_held_out(self, other: Calibration, found: Calibration) -> bool:
+        """Whether a continued calibration is worse on the held-out part, as where rough errors of the fitted one lead it."""
+        return self.score(other.arm).windows > self.settings.errors.converged * self.score(found.arm).windows
 
     def calibrate_on_all_data(self, found: Calibration) -> Calibration:
         """Continue a calibration on all of the data and refine it: the final result, once no choice of model is left."""
