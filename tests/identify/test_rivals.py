@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from flexarm_env.effects import catalogue
 from flexarm_env.identify.replay.error_measure import Score
 from flexarm_env.identify.select import rivals
 from flexarm_env.identify.select.criteria import ThresholdCriteria
@@ -17,7 +18,9 @@ NUMBERS = {"cable_stiffness": 2, "end_stop": 4}
 
 def model(effect: str, error: float) -> Model:
     score = Score(error, error)
-    return Model((effect,), SimpleNamespace(arm=None, parameters=range(NUMBERS[effect])), score, score)
+    return Model(
+        (effect,), SimpleNamespace(arm=SimpleNamespace(known=catalogue()), parameters=range(NUMBERS[effect])), score, score
+    )
 
 
 def named(monkeypatch: pytest.MonkeyPatch, first: dict[str, float], again: dict[str, float]) -> tuple[str, ...]:

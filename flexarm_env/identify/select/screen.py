@@ -60,7 +60,7 @@ def screen(calibrator: Calibrator, starts: Sequence[Calibration], progress: Prog
     return Screening(best_trials(trials), tuple(names[number // len(bases) :]))
 
 
-def try_effect(base: Baseline, name: str, briefly: bool) -> list[Trial]:
+def try_effect(base: Baseline, name: str, briefly: bool = False) -> list[Trial]:
     """Fit an effect from its most promising start, if it explains anything."""
     return [attempt(base, signature) for signature in signatures(base, name, briefly)]
 
