@@ -17,7 +17,8 @@ from pathlib import Path
 import pytest
 from documents import PROJECT, README
 
-from benchmarks.hidden_effects.score import Figure, figures
+from benchmarks.answers.figures import Figure
+from benchmarks.hidden_effects.score import figures
 
 RESULTS = PROJECT / "results"
 HIDDEN = RESULTS / "hidden_effects" / "diagnose-8"

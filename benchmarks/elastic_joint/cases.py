@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.answers.place import Place
 from benchmarks.machines import translate
 from flexarm_env import Arm, Recording
 from tests.rig.experiments import Plan
@@ -140,26 +141,8 @@ def record(machine: Machine, name: str, goal: np.ndarray, seed: int) -> Recordin
     return Recording.from_arrays(name, time, "position", goal, {"arm_angle": angle, "motor_speed": speed})
 
 
-@dataclass(frozen=True)
-class Key:
-    """The place of a case.
-
-    Attributes:
-        seed: of the benchmark.
-        index: from 0.
-    """
-
-    seed: int
-    index: int
-
-    @property
-    def name(self) -> str:
-        """Name of the case's file."""
-        return f"{self.index:04d}"
-
-    def as_json(self) -> dict[str, Any]:
-        """Convert to plain data."""
-        return asdict(self) | {"name": self.name}
+class Key(Place):
+    """The place of a servo."""
 
     def pose(self) -> tuple[dict[str, Any], Arm, list[Recording]]:
         """Make the case: its plain data, the arm as given and the recordings. The same key gives the same bits."""

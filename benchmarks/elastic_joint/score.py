@@ -7,13 +7,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
-from benchmarks.hidden_effects.score import Figure, first, median, share
-from benchmarks.hidden_effects.table import against_goals, made_by, origin
+from benchmarks.answers.figures import Answer, Figure, first, median, share
+from benchmarks.answers.tables import against_goals, made_by, origin
 from flexarm_env.files import write_whole
-
-Answer = dict[str, Any]
 
 #: Largest deviations that count as right: of the resonance, of the delay [s], and of Coulomb friction.
 RESONANCE, DELAY, FRICTION = 0.02, 1e-3, 0.1

@@ -5,15 +5,15 @@ from __future__ import annotations
 import argparse
 import fnmatch
 import sys
-import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from benchmarks.answers.program import print_figures, teller
+from benchmarks.answers.run import by_diagnosis, run
 from benchmarks.hidden_effects import baselines, sindy, table
 from benchmarks.hidden_effects.calibrate import calibrate
 from benchmarks.hidden_effects.cases import cases, sample
-from benchmarks.hidden_effects.run import by_diagnosis, run
 from flexarm_env.terminal.program import Program
 
 METHODS = {
@@ -48,11 +48,7 @@ def _options(arguments: Sequence[str]) -> argparse.Namespace:
 def main(arguments: Sequence[str]) -> None:
     """Answer the requested cases."""
     asked = _options(arguments)
-    began = time.perf_counter()
-
-    def say(text: str) -> None:
-        print(f"{time.perf_counter() - began:5.0f} s  {text}", file=sys.stderr, flush=True)
-
+    say = teller()
     if asked.calibrate:
         calibrate(asked.only, asked.jobs, say)
         return
@@ -81,8 +77,7 @@ def _write(asked: argparse.Namespace, method: str, answers: list[dict[str, Any]]
     command = f"python -m benchmarks.hidden_effects --method {asked.method} --seed {asked.seed}"
     command += f" --sample {asked.sample}" if asked.sample else ""
     print(method)
-    for figure in table.write(_folder(asked, method), answers, method, asked.seed, command):
-        print(f"{figure.what:50} {figure.goal:>12}  {figure.text:>16}  {figure.judged}")
+    print_figures(table.write(_folder(asked, method), answers, method, asked.seed, command), 50)
 
 
 if __name__ == "__main__":

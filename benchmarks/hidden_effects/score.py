@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Iterable
 
-import numpy as np
-
+from benchmarks.answers.figures import Answer, Figure, coverage, first, median, share
 from benchmarks.hidden_effects.truth import covered
 
-Answer = dict[str, Any]
 SENSORS = (
     "tach_filter",
     "tach_ripple",
@@ -25,38 +21,6 @@ SENSORS = (
 )
 #: Effects with the same motion under current drive, between which no method does better than chance.
 TWINS = {"time_offset": "input_delay", "brush_drop": "dead_zone"}
-
-
-@dataclass(frozen=True)
-class Figure:
-    """One line of the table: quantity, goal in words, value (None without cases), number of cases, and whether it is met."""
-
-    what: str
-    goal: str
-    value: float | None
-    count: int
-    met: bool
-    unit: str = "%"
-
-    @property
-    def text(self) -> str:
-        """Format the value with its unit and the number of cases."""
-        if self.value is None:
-            return "none"
-        if self.unit == "%":
-            return f"{100.0 * self.value:.1f} % of {self.count}"
-        return f"{self.value:.3g}{' ' + self.unit if self.unit else ''} ({self.count})"
-
-    @property
-    def judged(self) -> str:
-        """Write whether it meets its goal, in a word; empty without cases."""
-        return "" if self.value is None else "met" if self.met else "missed"
-
-
-def first(answer: Answer) -> str | None:
-    """Select the effect that a diagnosis names first, if any."""
-    effects: list[str] = answer["found"]["effects"]
-    return effects[0] if effects else None
 
 
 def merge_twins(effects: Iterable[str]) -> set[str]:
@@ -118,26 +82,6 @@ def removed(answer: Answer) -> float:
     return 1.0 - after / before if before > 0.0 else 0.0
 
 
-def share(what: str, goal: float, answers: Sequence[Answer], test: Callable[[Answer], bool], at_most: bool = False) -> Figure:
-    """Compute the share of answers that pass a test, against its goal."""
-    value = float(np.mean([test(a) for a in answers])) if answers else None
-    met = value is not None and (value <= goal if at_most else value >= goal)
-    return Figure(what, f"{'≤' if at_most else '≥'} {100 * goal:.0f} %", value, len(answers), met)
-
-
-def median(what: str, goal: str, values: Sequence[float], meets: Callable[[float], bool], unit: str) -> Figure:
-    """Compute the median of values, against its goal."""
-    value = float(np.median(values)) if values else None
-    return Figure(what, goal, value, len(values), value is not None and meets(value), unit)
-
-
-def coverage(what: str, goal: tuple[float, float], held: Sequence[bool]) -> Figure:
-    """Compute the share of intervals that contain the truth, against its goal."""
-    value = float(np.mean(held)) if held else None
-    words = f"{100 * goal[0]:.0f} to {100 * goal[1]:.0f} %"
-    return Figure(what, words, value, len(held), value is not None and goal[0] <= value <= goal[1])
-
-
 def believed(answers: Iterable[Answer]) -> list[tuple[float, bool]]:
     """List the probability of every named effect, and whether the machine has it or its exact twin."""
     found = []
@@ -146,16 +90,6 @@ def believed(answers: Iterable[Answer]) -> list[tuple[float, bool]]:
         for name, every in zip(answer["found"]["effects"], answer["found"]["probability"], strict=True):
             found.append((every[0], merge_twins([name]) <= hidden))
     return found
-
-
-def calibration(what: str, most: float, pairs: Sequence[tuple[float, bool]]) -> Figure:
-    """Compute the expected calibration error: the mean difference of probabilities and the shares that were right."""
-    groups: dict[float, list[bool]] = {}
-    for probability, right in pairs:
-        groups.setdefault(round(probability, 2), []).append(right)
-    off = [len(rights) * abs(probability - float(np.mean(rights))) for probability, rights in groups.items()]
-    value = sum(off) / len(pairs) if pairs else None
-    return Figure(what, f"≤ {100 * most:.0f} %", value, len(pairs), value is not None and value <= most)
 
 
 def figures(answers: Iterable[Answer]) -> list[Figure]:

@@ -8,14 +8,10 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from benchmarks.hidden_effects.score import Figure, confusions, figures
+from benchmarks.answers.figures import Figure
+from benchmarks.answers.tables import against_goals, made_by, origin
+from benchmarks.hidden_effects.score import confusions, figures
 from flexarm_env.files import write_whole
-
-
-def against_goals(found: Sequence[Figure]) -> list[str]:
-    """Format figures against their goals, as the lines of a table."""
-    lines = ["| | goal | measured | |", "|---|---|---:|---|"]
-    return lines + [f"| {f.what} | {f.goal} | {f.text} | {f.judged} |" for f in found]
 
 
 def markdown(found: Sequence[Figure], mistakes: Sequence[tuple[str, str, int]], made: str) -> str:
@@ -25,17 +21,6 @@ def markdown(found: Sequence[Figure], mistakes: Sequence[tuple[str, str, int]], 
     lines += ["| hidden | said | cases |", "|---|---|---:|"]
     lines += [f"| {hidden} | {said} | {count} |" for hidden, said, count in mistakes]
     return "\n".join(lines) + "\n"
-
-
-def origin(answers: Sequence[dict[str, Any]]) -> dict[str, list[str]]:
-    """Collect the versions and commits that answered."""
-    return {f"{key}s": sorted({answer[key] or "unknown" for answer in answers}) for key in ("version", "commit")}
-
-
-def made_by(answers: Sequence[dict[str, Any]]) -> str:
-    """Write the versions and commits that answered."""
-    of = origin(answers)
-    return f"FlexArm {', '.join(of['versions'])}, commit {', '.join(of['commits'])}"
 
 
 def write(folder: Path, answers: Sequence[dict[str, Any]], method: str, seed: int, command: str) -> list[Figure]:

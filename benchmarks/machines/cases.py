@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import count
 from typing import Any
 
 import numpy as np
 
+from benchmarks.answers.place import Place
 from benchmarks.machines.effects import Sized
 from benchmarks.machines.experiments import Run, runs
 from benchmarks.machines.families import FAMILIES
@@ -42,17 +43,8 @@ KINDS = (
 EXACT = 0.3
 
 
-@dataclass(frozen=True)
-class Key:
-    """The place of a case.
-
-    Attributes:
-        seed: of the benchmark.
-        index: from 0.
-    """
-
-    seed: int
-    index: int
+class Key(Place):
+    """The place of a machine, which also says of what kind it is."""
 
     @property
     def kind(self) -> str:
@@ -62,11 +54,11 @@ class Key:
     @property
     def name(self) -> str:
         """Name of the case's file."""
-        return f"{self.index:04d}-{self.kind}"
+        return f"{super().name}-{self.kind}"
 
     def as_json(self) -> dict[str, Any]:
         """Convert to plain data."""
-        return asdict(self) | {"name": self.name, "kind": self.kind}
+        return super().as_json() | {"kind": self.kind}
 
     def pose(self) -> tuple[dict[str, Any], Arm, list[Recording]]:
         """Make the case: its plain data, the arm as given and the recordings."""

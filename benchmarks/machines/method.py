@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from benchmarks.hidden_effects.run import by_diagnosis
+from benchmarks.answers.run import by_diagnosis
 from flexarm_env import Arm, Recording
 
 #: Verdict on a case that ended in an error.

@@ -4,24 +4,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from typing import Any
 
-from benchmarks.hidden_effects.score import (
-    Figure,
-    believed,
-    calibration,
-    coverage,
-    is_right,
-    is_right_or_twin,
-    median,
-    merge_twins,
-    share,
-    verdict_in,
-)
+from benchmarks.answers.figures import Answer, Figure, calibration, coverage, median, share
+from benchmarks.hidden_effects.score import believed, is_right, is_right_or_twin, merge_twins, verdict_in
 from benchmarks.hidden_effects.truth import holds
 from benchmarks.machines.method import FAILED
-
-Answer = dict[str, Any]
 
 #: Kinds with one effect that the catalogue holds; verdicts that are wrong where nothing is missing.
 SINGLE, ALARMS = ("one", "sensor"), ("effects", "partly", "unknown", "recordings", FAILED)

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from benchmarks.hidden_effects.score import Figure
-from benchmarks.hidden_effects.table import against_goals, made_by, origin
+from benchmarks.answers.figures import Figure
+from benchmarks.answers.tables import against_goals, made_by, origin
 from benchmarks.machines.lacks import COUNTS
 from benchmarks.machines.score import Answer, figures, is_solved
 from flexarm_env.files import write_whole

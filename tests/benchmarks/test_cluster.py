@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 from joblib import Parallel, delayed, parallel_config
 
+from benchmarks.answers.run import run
 from benchmarks.hidden_effects.cases import cases
-from benchmarks.hidden_effects.run import run
 from flexarm_env import Arm, Recording, diagnose, simulate
 
 distributed = pytest.importorskip("distributed", reason="needs the extra cluster: pip install flexarm-env[cluster]")

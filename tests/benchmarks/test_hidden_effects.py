@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import flexarm_env
+from benchmarks.answers.run import run
 from benchmarks.hidden_effects import table, truth
 from benchmarks.hidden_effects.baselines import best_fit_wins, stepwise
 from benchmarks.hidden_effects.cases import CATALOGUE, cases, sample
-from benchmarks.hidden_effects.run import run
 from benchmarks.hidden_effects.score import confusions, figures
 from benchmarks.hidden_effects.sindy import sparse_effects
 from flexarm_env.arm import Arm

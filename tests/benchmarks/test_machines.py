@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.hidden_effects.run import run
+from benchmarks.answers.run import run
 from benchmarks.machines import table
 from benchmarks.machines.cases import KINDS, Key, case, keys
 from benchmarks.machines.catalogue import CATALOGUE

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from benchmarks.hidden_effects.score import believed, calibration
+from benchmarks.answers.figures import calibration
+from benchmarks.hidden_effects.score import believed
 from flexarm_env.identify.explain.probability import probabilities
 from flexarm_env.identify.settings import Probabilities
 
