@@ -20,7 +20,7 @@ from flexarm_env.identify.select.screen import Trial, control_of, screen
 from flexarm_env.identify.select.starts import candidates, shows_part_of_period
 from flexarm_env.identify.select.stepwise import extend_chain
 from flexarm_env.identify.select.swap import RivalComparison, compare_rivals
-from flexarm_env.identify.select.trace import Accepted, Trace, Tried
+from flexarm_env.identify.select.trace import Accepted, Trace, Tried, beside, gains, placed, share, with_last_score
 
 
 @dataclass(frozen=True)
@@ -70,14 +70,14 @@ class Search:
         if sufficient and trace.ranking:
             return trace
         if self.is_late:
-            return self._stop(trace, _beside("an effect was tried", trace))
+            return self._stop(trace, beside("an effect was tried", trace))
         screening, fitting, more = progress.split(6, 1, 3)
         starts = starts_of_search(self.calibrator, self.criteria, trace.model)
         screened = screen(self.calibrator, starts, screening, briefly=sufficient)
         if not trace.ranking:
             trace = trace.then("screen", tried=_gains_of_screening(screened.trials))
         if screened.untried:
-            trace = self._stop(trace, _beside(f"these effects were tried: {', '.join(screened.untried)}", trace))
+            trace = self._stop(trace, beside(f"these effects were tried: {', '.join(screened.untried)}", trace))
         if sufficient:
             return trace
         return self._fit_screened(trace, screened.trials, fitting, more)
@@ -97,14 +97,14 @@ class Search:
             if trace.accepted:
                 return trace
         if self.is_late:
-            trace = self._stop(trace, _beside("every promising effect was calibrated", trace))
+            trace = self._stop(trace, beside("every promising effect was calibrated", trace))
         elif trace.accepted:
             trace = self._recalibrate(trace)
         if not models:
             return trace
         measure = self.criteria.measure([m.score for m in models])
         models = sorted(models, key=lambda m: measure(m.score))
-        trace = trace.then("fit", tried=_gains(trace, models[::-1], measure))
+        trace = trace.then("fit", tried=gains(trace, models[::-1], measure))
         possible = [m for m in models if not m.at_bound]
         return self._accept(trace, possible) if possible else trace
 
@@ -156,7 +156,7 @@ class Search:
             return trace
         accepted = [Accepted(m.effects[-1], (m.effects[-1],), m.score) for m in chain[1:]]
         tried = [
-            Tried(step.effects[-1], _share(1.0 - step.score.excess / without.score.excess), chain[-1].calibration)
+            Tried(step.effects[-1], share(1.0 - step.score.excess / without.score.excess), chain[-1].calibration)
             for without, step in pairwise(chain)
         ]
         return trace.then("combine", chain[-1], accepted, tried)
@@ -225,7 +225,7 @@ class Search:
                     best = min(better, key=lambda m: m.score.windows)
                     name = best.effects[0]
                     entry = Accepted(name, (name, *(m.effects[0] for m in better if m is not best)), best.score)
-                    return trace.then("drop", best, _placed(kept, place, entry))
+                    return trace.then("drop", best, placed(kept, place, entry))
         return trace
 
     def _is_useless_beside(self, without: Model, found: Model) -> bool:
@@ -267,7 +267,7 @@ class Search:
         again = judge((), calibration, self.calibrator.dataset)
         if again.score.windows >= trace.model.score.windows:
             return trace
-        return trace.then("recalibrate", again, _with_last_score(trace.accepted, again))
+        return trace.then("recalibrate", again, with_last_score(trace.accepted, again))
 
     def _accept(self, trace: Trace, models: Sequence[Model]) -> Trace:
         """Accept the best model if it removes enough; the simplest of those that remove nearly as much."""
@@ -282,7 +282,7 @@ class Search:
         if not rivals.is_complete:
             trace = self._stop(trace, f"rivals of {winner.effects[0]} were calibrated again")
         elif rivals.tried and len(winner.effects) == 1:
-            trace = trace.then("fit", tried=_gains(trace, rivals.tried, rivals.measure))
+            trace = trace.then("fit", tried=gains(trace, rivals.tried, rivals.measure))
         winner, names = rivals.models[0], tuple(m.effects[0] for m in rivals.models)
         model = self._polish(winner)
         first, *companions = winner.effects
@@ -316,37 +316,12 @@ def exchange(trace: Trace, place: int, comparison: RivalComparison) -> Trace:
     untried = [n for n in now.equivalent if n not in comparison.tried]
     entry = replace(now, equivalent=(name, *comparison.alike, *untried))
     if name == now.effect:
-        return trace.then("swap", accepted=_placed(trace.accepted, place, entry), tried=tried)
+        return trace.then("swap", accepted=placed(trace.accepted, place, entry), tried=tried)
     tried.append(Tried(name, gain, comparison.best.calibration))
-    accepted = _placed(trace.accepted, place, replace(entry, effect=name))
-    return trace.then("swap", comparison.best, _with_last_score(accepted, comparison.best), tried)
-
-
-def _placed(accepted: Sequence[Accepted], place: int, entry: Accepted) -> list[Accepted]:
-    return [*accepted[:place], entry, *accepted[place + 1 :]]
-
-
-def _with_last_score(accepted: Sequence[Accepted], model: Model) -> list[Accepted]:
-    """Give the last accepted effect the score of a model with all of them."""
-    return [*accepted[:-1], replace(accepted[-1], score=model.score)]
-
-
-def _gains(trace: Trace, models: Sequence[Model], measure: Measure) -> list[Tried]:
-    """Compute the gains of models of one effect each, but for effects that are accepted already."""
-    before = measure(trace.model.score)
-    single = [m for m in models if len(m.effects) == 1 and m.effects[0] not in trace.effects]
-    return [Tried(m.effects[0], _share(1.0 - measure(m.score) / before), m.calibration) for m in single]
+    accepted = placed(trace.accepted, place, replace(entry, effect=name))
+    return trace.then("swap", comparison.best, with_last_score(accepted, comparison.best), tried)
 
 
 def _gains_of_screening(trials: Sequence[Trial]) -> list[Tried]:
     control = control_of(trials)
-    return [Tried(t.effect, _share(1.0 - t.held_out / control.held_out)) for t in trials if t.effect]
-
-
-def _beside(left_out: str, trace: Trace) -> str:
-    """Add the accepted effects to what is left out."""
-    return f"{left_out} beside {' and '.join(trace.effects)}" if trace.effects else left_out
-
-
-def _share(gain: float) -> float:
-    return float(np.clip(gain, 0.0, 1.0))
+    return [Tried(t.effect, share(1.0 - t.held_out / control.held_out)) for t in trials if t.effect]

@@ -6,10 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibration import Calibration
 from flexarm_env.identify.deadline import Deadline
 from flexarm_env.identify.replay.error_measure import Score
+from flexarm_env.identify.select.criteria import Measure
 from flexarm_env.identify.select.model import Model
 
 
@@ -159,3 +162,30 @@ class Trace:
                 }
             )
         return rows
+
+
+def placed(accepted: Sequence[Accepted], place: int, entry: Accepted) -> list[Accepted]:
+    """Put an entry in the place of an accepted effect."""
+    return [*accepted[:place], entry, *accepted[place + 1 :]]
+
+
+def with_last_score(accepted: Sequence[Accepted], model: Model) -> list[Accepted]:
+    """Give the last accepted effect the score of a model with all of them."""
+    return [*accepted[:-1], replace(accepted[-1], score=model.score)]
+
+
+def gains(trace: Trace, models: Sequence[Model], measure: Measure) -> list[Tried]:
+    """Compute the gains of models of one effect each, but for effects that are accepted already."""
+    before = measure(trace.model.score)
+    single = [m for m in models if len(m.effects) == 1 and m.effects[0] not in trace.effects]
+    return [Tried(m.effects[0], share(1.0 - measure(m.score) / before), m.calibration) for m in single]
+
+
+def beside(left_out: str, trace: Trace) -> str:
+    """Add the accepted effects to what is left out."""
+    return f"{left_out} beside {' and '.join(trace.effects)}" if trace.effects else left_out
+
+
+def share(gain: float) -> float:
+    """Limit a gain to a share, 0 to 1."""
+    return float(np.clip(gain, 0.0, 1.0))
