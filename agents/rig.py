@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -35,9 +35,12 @@ class Machine:
         seed: of the sensors' noise.
         samples: of the episode.
         rate: samples per second [Hz].
+        signals: that are read.
     """
 
-    def __init__(self, settings: Mapping[str, float], seed: int, samples: int, rate: float) -> None:
+    def __init__(
+        self, settings: Mapping[str, float], seed: int, samples: int, rate: float, signals: Sequence[str] = SIGNALS
+    ) -> None:
         values = resolve(dict(settings))
         beam = make_beam(values)
         self.parameters = make_par(values, beam, rate, STEP)
@@ -49,6 +52,7 @@ class Machine:
         self.noise = values["noise"] * SIGMA * stream(seed, "drive", "noise").standard_normal((samples + 1, len(SIGNALS)))
         self.steps = np.array([self.senses[f"step_{name}"] for name in ("angle", "speed", "strain", "strain")])
         self.tip_row, self.gain = beam.shape[-1], self.senses["ksg_base"]
+        self.read = [SIGNALS.index(signal) for signal in signals]
         self.sample = 0
         latch(self.state, self.bend, self.modal[0], self.senses, 0.0, self.clean[0])
 
@@ -56,7 +60,7 @@ class Machine:
         """Read the sensors (signals,), with noise and the converters' steps."""
         late = max(self.sample - int(self.senses["late_samples"]), 0)
         found: Floats = np.rint((self.clean[late, : len(SIGNALS)] + self.noise[self.sample]) / self.steps) * self.steps
-        return found
+        return found[self.read]
 
     def move(self, command: float) -> None:
         """Hold a command [A] for one sample."""
@@ -74,7 +78,9 @@ class Machine:
         return float(self.state[TH]), float(self.tip_row @ self.bend), float(self.gain * base)
 
 
-def drive(agent: Agent, task: Task, settings: Mapping[str, float], count: int, rate: float = 200.0) -> Trajectories:
+def drive(
+    agent: Agent, task: Task, settings: Mapping[str, float], count: int, rate: float = 200.0, signals: Sequence[str] = SIGNALS
+) -> Trajectories:
     """Drive a machine through `count` episodes of a slew with different noise of the sensors.
 
     Args:
@@ -83,9 +89,10 @@ def drive(agent: Agent, task: Task, settings: Mapping[str, float], count: int, r
         settings: of the rig.
         count: of episodes.
         rate: samples per second [Hz].
+        signals: that the agent observes.
     """
     samples = round(task.duration * rate)
-    machines = [Machine(settings, FIRST_SEED + i, samples, rate) for i in range(count)]
+    machines = [Machine(settings, FIRST_SEED + i, samples, rate, signals) for i in range(count)]
     length = resolve(dict(settings))["length"]
     tip, strain, commands = (np.zeros((samples, count)) for _ in range(3))
     agent.reset(count)

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from agents.evaluate import RATE
-from flexarm_env import Arm
+from agents.rig_cases import arm_files
+from flexarm_env import Arm, InputError
 from flexarm_env.controllers import make_controller
 from flexarm_env.controllers.tuned import shipped_controllers
 from flexarm_env.tasks import TASKS
@@ -18,9 +19,8 @@ from flexarm_env.trials.score import cost
 from flexarm_env.trials.sets import DEVELOPMENT_SEED, SETS
 from flexarm_env.tuning.search import Budget, tune
 
-NOMINAL = "thesis-fem"
 CLASSICAL = ("pd", "vibration_dual", "shaped_zvd", "lqg")
-#: Laws that are tuned anew on the nominal arm and on each corrected arm, and the budget of each search; every one starts from
+#: Laws that are tuned anew on each nominal arm and on each corrected arm, and the budget of each search; every one starts from
 #: the shipped values of its law.
 RETUNED = ("pd", "lqg", "pid_compensated")
 RETUNING = Budget(trials=25, arms=8)
@@ -30,9 +30,9 @@ KINDS = ("nominal", "corrected")
 REHEARSALS = 8
 
 
-def tuned_place(folder: Path, law: str, kind: str) -> Path:
-    """Locate the controller of a law that is tuned for the nominal arm or for a case's corrected one."""
-    return folder / "controllers" / f"{law}-{kind}.toml"
+def tuned_place(folder: Path, law: str, arm: Path) -> Path:
+    """Locate the controller of a law that is tuned for the arm of a file: a nominal one, or a case's corrected one."""
+    return folder / "controllers" / f"{law}-{arm.stem}.toml"
 
 
 def retune(law: str, arm: Arm, place: Path) -> None:
@@ -45,17 +45,28 @@ def retune(law: str, arm: Arm, place: Path) -> None:
 
 
 def controllers_of(folder: Path, case: str) -> dict[str, tuple[str | Path, Arm]]:
-    """List laws, and their tuned controllers where stored, each with its arm: the nominal one and a case's corrected one."""
-    arms = {"nominal": (Arm.load(NOMINAL), "nominal"), "corrected": (Arm.load(folder / "arms" / f"{case}.toml"), case)}
+    """List laws, and their tuned controllers where stored, each with its arm: the nominal one and a case's corrected one.
+
+    A law that cannot be made for a machine is left out: there is none against vibration without a beam.
+    """
     found: dict[str, tuple[str | Path, Arm]] = {}
+    arms = {kind: (place, Arm.load(place)) for kind, place in arm_files(case, folder).items()}
     for law in dict.fromkeys((*CLASSICAL, *RETUNED)):
-        for kind, (arm, name) in arms.items():
-            place = tuned_place(folder, law, name)
-            if law in CLASSICAL:
+        for kind, (place, arm) in arms.items():
+            tuned = tuned_place(folder, law, place)
+            if law in CLASSICAL and _can_be_made(law, arm):
                 found[f"{law}, {kind}"] = law, arm
-            if place.is_file():
-                found[f"{law} tuned, {kind}"] = place, arm
+            if tuned.is_file():
+                found[f"{law} tuned, {kind}"] = tuned, arm
     return found
+
+
+def _can_be_made(law: str, arm: Arm) -> bool:
+    try:
+        make_controller(law, arm, 1.0 / RATE)
+    except InputError:
+        return False
+    return True
 
 
 def rehearse(law: str | Path, arm: Arm, corrected: Arm) -> dict[str, np.ndarray]:

@@ -19,7 +19,7 @@ COLUMNS = (("settling_time", "settling [s]", 2), ("steady_error", "error [°]", 
 
 
 def less_by(values: Mapping[str, Floats], reference: Mapping[str, Floats], seed: int = 0) -> Interval:
-    """Compute the share by which the geometric mean of the three measures is below the reference's, with its 95 % interval.
+    """Compute the share by which the geometric mean of the measures is below the reference's, with its 95 % interval.
 
     Runs and episodes are drawn again, on both sides apart: a run is whole.
     """
@@ -63,7 +63,7 @@ def report_of(result: Mapping[str, Any]) -> str:
     for case, found in result["cases"].items():
         diagnosis = result["diagnoses"][case]
         named = ", ".join(diagnosis["effects"]) or "none named"
-        lines += ["", f"## {case}: {diagnosis['settings']}", ""]
+        lines += ["", f"## {case}: {diagnosis['settings']}, by {diagnosis['nominal']}", ""]
         lines.append(f"Hidden: {diagnosis['hidden']}. Diagnosis: `{diagnosis['verdict']}`, {named}, in {diagnosis['seconds']} s.")
         lines += ["", row(["for the arm", "runs", *(heading for _, heading, _ in COLUMNS)]), "|---|" + "---:|" * 4]
         for name, cell in found["cells"].items():
@@ -74,9 +74,9 @@ def report_of(result: Mapping[str, Any]) -> str:
 
 def _in_short(cases: Mapping[str, Any]) -> list[str]:
     lines = [
-        "By how much the geometric mean of settling time, error and strain is less for the corrected arm. Chosen: of the",
-        "controllers for the nominal and for the corrected arm, the one that does better in simulations of the corrected arm.",
-        "Bold: the interval excludes 0.",
+        "By how much the geometric mean of settling time, error and strain (none of a rigid link) is less for the corrected arm.",
+        "Chosen: of the controllers for the nominal and for the corrected arm, the one that does better in simulations of the",
+        "corrected arm. Bold: the interval excludes 0. Empty: the law cannot be made for that machine.",
         "",
         row(["corrected", "against", *cases]),
         "|---|---|" + "---:|" * len(cases),
@@ -85,7 +85,8 @@ def _in_short(cases: Mapping[str, Any]) -> list[str]:
         (who, rival) for found in cases.values() for who, rivals in found["corrected_less_by"].items() for rival in rivals
     )
     for who, rival in pairs:
-        entries = [_gain(found["corrected_less_by"][who][rival]) for found in cases.values()]
+        gains = [found["corrected_less_by"].get(who, {}).get(rival) for found in cases.values()]
+        entries = [_gain(gain) if gain else "" for gain in gains]
         lines.append(row([who, rival, *entries]))
     return lines
 

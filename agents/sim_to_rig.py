@@ -1,7 +1,7 @@
 """Compare controllers for a diagnosed arm with those for the nominal arm on the machine: python -m agents.sim_to_rig.
 
 The machine is the independent simulator of tests/rig with something hidden. Policies are trained, and classical
-controllers made and tuned, for the nominal arm, the nominal arm randomised (policies only) and the arm that `diagnose`
+controllers made and tuned, for the machine's nominal arm, that arm randomised (policies only) and the arm that `diagnose`
 corrected from three recordings of the machine; all then drive the machine. Stopped, the same command goes on.
 """
 
@@ -26,7 +26,8 @@ from agents.learning.options import Plan
 from agents.learning.plan_file import read_plan
 from agents.results import cells_place, origin_of, write_results
 from agents.rig import drive
-from agents.rig_controllers import NOMINAL, RETUNED, chosen, controllers_of, rehearse, retune, tuned_place
+from agents.rig_cases import CASES, PROJECT, arm_files
+from agents.rig_controllers import RETUNED, chosen, controllers_of, rehearse, retune, tuned_place
 from agents.rig_report import report_of, verdict_of
 from agents.train import place_of
 from flexarm_env import Arm, InputError, Recording, __version__, diagnose
@@ -42,70 +43,63 @@ from flexarm_env.trials.rollout import Agent
 from flexarm_env.trials.sets import FIRST_SEED
 from tests.rig import write_case
 
-PROJECT = Path(__file__).resolve().parent.parent
 FOLDER = PROJECT / "results" / "sim_to_rig"
-#: Hidden effects: the rig's settings, and the effect's name in the catalogue.
-CASES: Mapping[str, tuple[Mapping[str, float], str]] = {
-    "cable": ({"cable": 0.15}, "cable_stiffness"),
-    "dead-zone": ({"dead": 0.4}, "dead_zone"),
-    "bias": ({"bias": 0.15}, "constant_torque"),
-    "lag": ({"lag": 0.02}, "current_lag"),
-}
-#: Training plan of each kind of policy; the corrected ones use the nominal plan on another arm.
-PLANS = {"nominal": "nominal", "randomised": "randomised", "corrected": "nominal"}
+#: Training plan of each kind of policy, on the machine's nominal arm; the corrected ones use the nominal plan on another arm.
+PLANS: Mapping[str, str] = {"nominal": "nominal", "randomised": "randomised", "corrected": "nominal"}
 
 
-def correct(case: str, folder: Path, jobs: int) -> None:
+def correct(case: str, place: Path, jobs: int) -> None:
     """Record a machine three times, diagnose the nominal arm against it, and keep the corrected arm and the verdict."""
-    settings, effect = CASES[case]
-    with tempfile.TemporaryDirectory() as place:
-        write_case(place, dict(settings), 0)
-        found = diagnose(Arm.load(NOMINAL), Recording.read_all(place), jobs=jobs)
-    folder.mkdir(parents=True, exist_ok=True)
-    about = {"hidden": effect, "settings": settings, "verdict": found.verdict, "effects": list(found.effects)}
-    about |= {"error": dict(found.error), "seconds": round(found.seconds, 1), "version": __version__, "commit": commit()}
-    write_whole(folder / f"{case}.json", json.dumps(about, indent=1) + "\n")
-    found.arm.save(folder / f"{case}.toml")
+    machine = CASES[case]
+    with tempfile.TemporaryDirectory() as recorded:
+        write_case(recorded, machine.settings, 0)
+        found = diagnose(Arm.load(machine.nominal), Recording.read_all(recorded), jobs=jobs)
+    place.parent.mkdir(parents=True, exist_ok=True)
+    about = {"hidden": machine.effect, "settings": machine.settings, "nominal": machine.nominal.stem}
+    about |= {"verdict": found.verdict, "effects": list(found.effects), "error": dict(found.error)}
+    about |= {"seconds": round(found.seconds, 1), "version": __version__, "commit": commit()}
+    write_whole(place.with_suffix(".json"), json.dumps(about, indent=1) + "\n")
+    found.arm.save(place)
 
 
-def plan_of(kind: str, case: str | None, folder: Path) -> tuple[Path, Plan]:
-    """Look up the name and the training plan of a kind of policy."""
+def plan_of(kind: str, case: str, folder: Path) -> tuple[Path, Plan]:
+    """Look up the name and the training plan of a kind of policy for a case; cases of one nominal arm share its policies."""
+    arm = arm_files(case, folder)["corrected" if kind == "corrected" else "nominal"]
     plan = read_plan(PROJECT / "configs" / "agents" / "rig" / f"{PLANS[kind]}.toml")
-    if case is None:
-        return Path(kind), plan
-    return Path(f"{kind}-{case}"), replace(plan, arm=os.path.relpath(folder / "arms" / f"{case}.toml"))
+    return Path(f"{kind}-{arm.stem}"), replace(plan, arm=os.path.relpath(arm))
 
 
-def wanted() -> list[tuple[str, str | None]]:
-    """List each kind of policy, with its case where that matters."""
-    return [("nominal", None), ("randomised", None), *(("corrected", case) for case in CASES)]
+def wanted(folder: Path) -> dict[Path, Plan]:
+    """List the plan of every policy by its name."""
+    return dict(plan_of(kind, case, folder) for kind in PLANS for case in CASES)
 
 
 def make(folder: Path, jobs: int, say: Callable[[str], None]) -> None:
-    """Make the missing diagnoses and policies."""
+    """Make the missing diagnoses, controllers and policies."""
     from agents.train import one_run
 
-    for case in CASES:
-        if not (folder / "arms" / f"{case}.toml").is_file():
+    files = {case: arm_files(case, folder) for case in CASES}
+    for case, places in files.items():
+        if not places["corrected"].is_file():
             say(f"diagnosing {case}")
-            correct(case, folder / "arms", jobs)
+            correct(case, places["corrected"], jobs)
+    arms = dict.fromkeys(place for kind in ("nominal", "corrected") for place in (places[kind] for places in files.values()))
     for law in RETUNED:
-        for kind, arm in [("nominal", Arm.load(NOMINAL)), *((c, Arm.load(folder / "arms" / f"{c}.toml")) for c in CASES)]:
-            if not tuned_place(folder, law, kind).is_file():
-                say(f"tuning {law} on {kind}")
-                retune(law, arm, tuned_place(folder, law, kind))
-    most = max(plan_of(kind, case, folder)[1].seeds for kind, case in wanted())
+        for arm in arms:
+            if not tuned_place(folder, law, arm).is_file():
+                say(f"tuning {law} on {arm.stem}")
+                retune(law, Arm.load(arm), tuned_place(folder, law, arm))
+    plans = wanted(folder)
     # seed by seed, so that a stopped run leaves equally many of each kind
-    for seed in range(most):
-        for kind, case in wanted():
-            name, plan = plan_of(kind, case, folder)
+    for seed in range(max(plan.seeds for plan in plans.values())):
+        for name, plan in plans.items():
             if seed < plan.seeds:
                 one_run(name, plan, seed, folder / "weights", None)
 
 
 def policies_of(folder: Path, kind: str, case: str) -> list[Path]:
     """Find the stored runs of a kind, for a case."""
-    name, plan = plan_of(kind, case if kind == "corrected" else None, folder)
+    name, plan = plan_of(kind, case, folder)
     return [path for seed in range(plan.seeds) if (path := place_of(folder / "weights", name, seed)).is_file()]
 
 
@@ -120,8 +114,8 @@ def drive_controller(law: str | Path, arm: Arm, case: str, count: int) -> dict[s
 
 
 def _driven(agents: Sequence[Agent], case: str, count: int) -> dict[str, np.ndarray]:
-    settings, task = CASES[case][0], TASKS["slew"]
-    seen = [measure(drive(agent, task, settings, count, RATE), task) for agent in agents]
+    task, signals = TASKS["slew"], tuple(Arm.load(CASES[case].nominal).signals)
+    seen = [measure(drive(agent, task, CASES[case].settings, count, RATE, signals), task) for agent in agents]
     return {key: np.array([values[key] for values in seen]) for key in MEASURES}
 
 
@@ -129,7 +123,7 @@ def evaluate(folder: Path, cases: Sequence[str], count: int, jobs: int) -> dict[
     """Evaluate all policies and controllers on the machines: each measure (runs, episodes), by case and agent."""
     work: dict[Name, Task] = {}
     for case in cases:
-        corrected = Arm.load(folder / "arms" / f"{case}.toml")
+        corrected = Arm.load(arm_files(case, folder)["corrected"])
         for kind in PLANS:
             work["machine", case, f"policy, {kind}"] = (drive_policies, (policies_of(folder, kind, case), case, count))
         for name, (law, arm) in controllers_of(folder, case).items():
@@ -169,11 +163,12 @@ def main(arguments: Sequence[str]) -> int:
     if not there:
         raise InputError(f"no policies in {asked.save}; add --make to diagnose and train")
     values = evaluate(asked.save, there, asked.count, asked.jobs)
+    told = {case: arm_files(case, asked.save)["corrected"].with_suffix(".json") for case in there}
     result = {
         **origin_of(f"python -m agents.sim_to_rig --count {asked.count}", FIRST_SEED),
         "episodes": asked.count,
         "seconds": round(time.perf_counter() - began, 1),
-        "diagnoses": {case: read_json(asked.save / "arms" / f"{case}.json", "delete it, and add --make") for case in there},
+        "diagnoses": {case: read_json(place, "delete it, and add --make") for case, place in told.items()},
         "not_made": [case for case in CASES if case not in there],
         "cases": {case: verdict_of(found) for case, found in values.items()},
     }

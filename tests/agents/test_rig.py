@@ -11,9 +11,10 @@ pytest.importorskip("stable_baselines3")
 
 from agents.goals import GOALS
 from agents.rig import Machine, drive
+from agents.rig_cases import CASES, Case, arm_files
 from agents.rig_controllers import chosen, controllers_of, rehearse, tuned_place
 from agents.rig_report import less_by, verdict_of
-from agents.sim_to_rig import CASES, main, plan_of, wanted
+from agents.sim_to_rig import main, wanted
 from flexarm_env import Arm
 from flexarm_env.controllers import make_controller
 from flexarm_env.controllers.tuned import TunedController
@@ -37,38 +38,48 @@ def test_a_machine_driven_sample_by_sample_repeats_a_recording() -> None:
         machine.move(command)
 
 
-def test_the_machine_does_what_the_arm_does_where_nothing_is_hidden() -> None:
-    arm, task = Arm.load("thesis-fem"), TASKS["slew"]
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
+def test_the_machine_does_what_the_nominal_arm_does_where_nothing_is_hidden(case: Case) -> None:
+    arm, task = Arm.load(case.nominal), TASKS["slew"]
     controller = make_controller("pd", arm, 0.005)
-    machine = measure(drive(controller, task, {}, 2), task)
+    machine = measure(drive(controller, task, case.known, 2, signals=tuple(arm.signals)), task)
     model = measure(roll_out(controller, task, arm, SETS["nominal"], 2), task)
     assert machine["steady_error"] == pytest.approx(model["steady_error"], rel=0.05)
     assert machine["residual_strain"] == pytest.approx(model["residual_strain"], rel=0.2)
 
 
-def test_what_is_hidden_is_in_the_catalogue() -> None:
-    for settings, effect in CASES.values():
-        assert effect in catalogue()
-        assert CATALOGUE[effect] in settings
+def test_an_agent_observes_only_what_its_machine_measures() -> None:
+    angle_only = Machine({"noise": 0.0}, 0, 1, 200.0, ("strain_base", "arm_angle"))
+    assert angle_only.readings().shape == (2,)
+
+
+def test_what_is_hidden_is_in_the_catalogue_and_not_in_the_nominal_arm() -> None:
+    for case in CASES.values():
+        assert case.effect in catalogue()
+        assert CATALOGUE[case.effect] in case.hidden
+        assert case.effect not in Arm.load(case.nominal).effects
+        assert not set(case.hidden) & set(case.known)
 
 
 def test_the_corrected_arm_s_policies_are_trained_as_the_nominal_one_s(tmp_path) -> None:
-    plans = {name.name: plan for name, plan in (plan_of(kind, case, tmp_path) for kind, case in wanted())}
-    assert set(plans) == {"nominal", "randomised", *(f"corrected-{case}" for case in CASES)}
-    nominal = plans["nominal"].table()
-    for case in CASES:
-        corrected = plans[f"corrected-{case}"].table()
-        assert corrected.pop("arm").endswith(f"{case}.toml")
-        assert corrected == {key: value for key, value in nominal.items() if key != "arm"}
+    plans = {name.name: plan.table() for name, plan in wanted(tmp_path).items()}
+    nominal = {case.nominal.stem for case in CASES.values()}
+    kinds = {f"{kind}-{arm}" for kind in ("nominal", "randomised") for arm in nominal}
+    assert set(plans) == {*kinds, *(f"corrected-{case}" for case in CASES)}
+    for name, case in CASES.items():
+        corrected, given = plans[f"corrected-{name}"], plans[f"nominal-{case.nominal.stem}"]
+        assert corrected.pop("arm").endswith(f"arms/{name}.toml")
+        assert Arm.load(given["arm"]) == Arm.load(case.nominal)
+        assert corrected == {key: value for key, value in given.items() if key != "arm"}
 
 
 def test_each_law_is_made_and_tuned_for_both_arms(tmp_path) -> None:
     (tmp_path / "arms").mkdir()
     Arm.load("thesis-fem").with_effect("constant_torque", torque=0.1).save(tmp_path / "arms" / "bias.toml")
-    for kind, gain in (("nominal", 2.0), ("bias", 6.0)):
-        place = tuned_place(tmp_path, "pd", kind)
+    for arm, gain in zip(arm_files("bias", tmp_path).values(), (2.0, 6.0), strict=True):
+        place = tuned_place(tmp_path, "pd", arm)
         place.parent.mkdir(exist_ok=True)
-        TunedController("pd", kind, "0.1.0", {"proportional": gain}).save(place)
+        TunedController("pd", arm.stem, "0.1.0", {"proportional": gain}).save(place)
     found = controllers_of(tmp_path, "bias")
     assert {"pd, nominal", "pd, corrected", "lqg, corrected", "pd tuned, nominal", "pd tuned, corrected"} <= set(found)
     assert "lqg tuned, corrected" not in found  # not made
@@ -77,6 +88,12 @@ def test_each_law_is_made_and_tuned_for_both_arms(tmp_path) -> None:
     )
     assert (nominal.proportional, corrected.proportional) == (2.0, 6.0)
     assert nominal.loads.torque == 0.0 != corrected.loads.torque
+
+
+def test_a_law_against_vibration_is_left_out_for_a_rigid_link(tmp_path) -> None:
+    (tmp_path / "arms").mkdir()
+    Arm.load(CASES["soft-gears"].nominal).save(tmp_path / "arms" / "soft-gears.toml")
+    assert {name.partition(",")[0] for name in controllers_of(tmp_path, "soft-gears")} == {"pd", "lqg"}
 
 
 def test_of_two_controllers_the_one_is_chosen_that_a_simulation_of_the_arm_shows_to_be_better(tmp_path) -> None:
@@ -93,6 +110,13 @@ def test_of_two_controllers_the_one_is_chosen_that_a_simulation_of_the_arm_shows
 def test_the_cost_is_the_logarithm_of_the_geometric_mean() -> None:
     values = dict(zip(GOALS, (np.full((1, 4), size) for size in (2.0, 0.5, 0.01)), strict=True))
     assert np.exp(cost(values)) == pytest.approx(np.full((1, 4), (2.0 * 0.5 * 0.01) ** (1 / 3)))
+    half = {name: 0.5 * value for name, value in values.items()}
+    assert less_by(half, values) == pytest.approx((0.5, 0.5, 0.5))
+
+
+def test_the_strain_that_a_rigid_link_lacks_does_not_dilute_the_cost() -> None:
+    values = {"settling_time": np.full((1, 4), 2.0), "steady_error": np.full((1, 4), 0.5), "residual_strain": np.zeros((1, 4))}
+    assert np.exp(cost(values)) == pytest.approx(np.ones((1, 4)))
     half = {name: 0.5 * value for name, value in values.items()}
     assert less_by(half, values) == pytest.approx((0.5, 0.5, 0.5))
 

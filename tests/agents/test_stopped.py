@@ -30,7 +30,7 @@ def small(command: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> list[s
     if command == "sim_to_rig":
         monkeypatch.setattr(module, "CASES", {"bias": module.CASES["bias"]})
         monkeypatch.setattr("agents.rig_controllers.CLASSICAL", ("pd",))
-        weights = [f"weights/{name}-0.safetensors" for name in ("nominal", "randomised", "corrected-bias")]
+        weights = [f"weights/{name}-0.safetensors" for name in ("nominal-thesis-fem", "randomised-thesis-fem", "corrected-bias")]
         for name in ("arms/bias.toml", "arms/bias.json", *weights):
             for save in ("whole", "stopped"):
                 copy(f"sim_to_rig/{name}", (folder / save / name).parent)

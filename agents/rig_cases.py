@@ -1,0 +1,49 @@
+"""Machines of the independent simulator: what the nominal arm has of each, and what is hidden in it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+PROJECT = Path(__file__).resolve().parent.parent
+ARMS = PROJECT / "configs" / "agents" / "rig" / "arms"
+
+
+@dataclass(frozen=True)
+class Case:
+    """A machine, and the arm that lacks what is hidden in it.
+
+    Attributes:
+        hidden: settings of tests.rig.
+        effect: of the catalogue, that is hidden.
+        nominal: file of the nominal arm.
+        known: settings of tests.rig that the nominal arm has, where it is not the rig's own.
+    """
+
+    hidden: Mapping[str, float]
+    effect: str
+    nominal: Path = PROJECT / "configs" / "arms" / "thesis-fem.toml"
+    known: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def settings(self) -> dict[str, float]:
+        """All settings of the machine."""
+        return {**self.known, **self.hidden}
+
+
+CASES: Mapping[str, Case] = {
+    "cable": Case({"cable": 0.15}, "cable_stiffness"),
+    "dead-zone": Case({"dead": 0.4}, "dead_zone"),
+    "bias": Case({"bias": 0.15}, "constant_torque"),
+    "lag": Case({"lag": 0.02}, "current_lag"),
+    "payload": Case({"payload": 0.12}, "payload", ARMS / "tilted.toml", {"tilt": 0.25}),
+    "soft-gears": Case(
+        {"gearc": 60.0, "mesh_c": 0.1}, "gear_compliance", ARMS / "rigid-link.toml", {"elements": 0, "jh": 0.14256}
+    ),
+}
+
+
+def arm_files(case: str, folder: Path) -> dict[str, Path]:
+    """Locate the nominal arm of a case, and the one that a diagnosis has corrected, below a folder of results."""
+    return {"nominal": CASES[case].nominal, "corrected": folder / "arms" / f"{case}.toml"}
