@@ -62,7 +62,8 @@ def laws_of(constants: Constants, signals: Sequence[str], present: Present, know
                 varies = effect.varies if port == "friction" else port in VARYING_PORTS
                 parameters = tuple(values[key] for key in effect.parameters)
                 share = 0.0 if yields else _motor_share(constants, effect)
-                active.append(ActiveLaw(known.kinds[name, port], port, parameters, varies, share, _read_by(signals, effect)))
+                kind, reads, dry = known.kinds[name, port], _read_by(signals, effect), effect.modifies != "viscous"
+                active.append(ActiveLaw(kind, port, parameters, varies, share, reads, dry))
     return active
 
 

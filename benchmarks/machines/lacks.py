@@ -68,9 +68,7 @@ def fit_together(names: list[str]) -> bool:
     named = [part for part in parts if part]
     # the rig separates the motor's share of the friction of the model only
     splits = "gears" in named and bool({"viscous", "coulomb", "stiction", "cogging"} & set(names))
-    # warming takes the plant's asymmetric viscous friction along with the dry one, and the rig's not
-    warms = {"friction_warmup", "asymmetric_viscous"} <= set(names)
-    return len(set(named)) == len(named) and not splits and not warms
+    return len(set(named)) == len(named) and not splits
 
 
 def _sized(draw: Rng, yard: Yardstick, name: str) -> Sized | None:

@@ -51,7 +51,8 @@ class Effect:
         scan_phase: the parameter that shifts its sine, which the screening turns by half where the sign is wrong; "" for none.
         most_elements: finite elements of a beam beyond which it is no candidate.
         condition: the condition of a recording, as in "# payload = 0.3 kg", that is added to its size; "" for none.
-        modifies: the effect that it changes and without which it is no candidate, "" for none.
+        modifies: the effect that it changes and without which it is no candidate, "" for none; friction that changes "viscous" is
+            that of a lubricant, and not dry.
         needs: required of the arm: names of parts as in `Arm.has`, of signals, "strain" for any strain gage, or its input.
         fitted: whether its parameters can be fitted (a count cannot).
     """

@@ -31,7 +31,8 @@ class ActiveLaw:
     """One active law: its place in the catalogue's list of laws, its parameters in the law's order.
 
     `varies` is true if it changes while a body turns one way, so that the force must be fitted over each step. `motor_share` is
-    the part of it that acts on the motor if motor and hub are two bodies, `reads` the signals that it changes.
+    the part of it that acts on the motor if motor and hub are two bodies, `reads` the signals that it changes. `dry` is false of
+    a lubricant's friction.
     """
 
     kind: int
@@ -40,6 +41,7 @@ class ActiveLaw:
     varies: bool
     motor_share: float = 0.0
     reads: tuple[str, ...] = ()
+    dry: bool = True
 
 
 def law_lists(
@@ -48,8 +50,8 @@ def law_lists(
     """List the laws by port, and their parameters.
 
     A port's list is the number of its laws, then the kind of each and the place of its parameters. In front of these stand
-    the shares that act on the hub and on the motor. A sensor's law has one entry for each signal that it changes, with the
-    signal's number as a third column.
+    whether it is dry, and the shares that act on the hub and on the motor. A sensor's law has one entry for each signal that it
+    changes, with the signal's number as a third column.
     """
     parameters: list[float] = []
     lists = []
@@ -58,7 +60,7 @@ def law_lists(
         rows = [len(laws)]
         for law in laws:
             share = law.motor_share if bodies == 2 else 0.0
-            parameters += [1.0 - share, share]
+            parameters += [float(law.dry), 1.0 - share, share]
             rows += [law.kind, start + len(parameters)]
             parameters += law.parameters
         lists.append(rows)

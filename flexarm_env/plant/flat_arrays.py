@@ -208,6 +208,9 @@ def _constants(structure: Structure, laws: Sequence[Sequence[ActiveLaw]], interv
     shares = np.array([[law.motor_share if two else 0.0 for law in own if law.port == "friction"] for own in laws])
     head[..., at.HUB_FRICTION_SHARE] = np.sum(1.0 - shares, axis=-1).reshape(lengths.shape[:-1])
     head[..., at.MOTOR_FRICTION_SHARE] = np.sum(shares, axis=-1).reshape(lengths.shape[:-1])
+    if not all(law.dry for law in laws[0]):
+        share = structure.motor_viscous_share if two else 0.0
+        head[..., at.HUB_VISCOUS], head[..., at.MOTOR_VISCOUS] = (1.0 - share) * structure.viscous, share * structure.viscous
     return head
 
 

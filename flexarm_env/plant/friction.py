@@ -25,19 +25,28 @@ class Contact(NamedTuple):
 
 @njit
 def friction_budget(d: Numbers, n: Places, body: int, c: Contact) -> float:
-    """Compute dry friction [Nm] against motion in a direction, or at rest against a push: the sum over the effects."""
-    total = 0.0
+    """Compute friction [Nm] against motion in a direction, or at rest against a push: the sum over the effects.
+
+    Factors, such as that of warming up, are of the dry part alone. Neither part drives: a lubricant may take away the linear
+    friction, which is not among these effects, but no more.
+    """
+    factor = 1.0
+    place = n[at.FACTOR_LAWS]
+    for j in range(n[place]):
+        factor *= factor_law(n[place + 1 + 2 * j], c.angle, c.time, d, n[place + 2 + 2 * j])
+    dry, lubricated = 0.0, 0.0
     place = n[at.FRICTION_LAWS]
     for j in range(n[place]):
         law = n[place + 2 + 2 * j]
         share = d[law - 2 + body]
         if share > 0.0:
             kind = n[place + 1 + 2 * j]
-            total += share * friction_law(kind, c.direction, c.speed, c.angle, c.time, c.load, c.at_rest, d, law)
-    place = n[at.FACTOR_LAWS]
-    for j in range(n[place]):
-        total *= factor_law(n[place + 1 + 2 * j], c.angle, c.time, d, n[place + 2 + 2 * j])
-    return max(total, 0.0)
+            part = share * friction_law(kind, c.direction, c.speed, c.angle, c.time, c.load, c.at_rest, d, law)
+            if d[law - 3] > 0.0:
+                dry += part
+            else:
+                lubricated += part
+    return max(factor * dry, 0.0) + max(lubricated, -d[at.HUB_VISCOUS + body] * c.speed)
 
 
 @njit

@@ -37,7 +37,9 @@ LOAD_STIFFNESS, LOAD_DAMPING, LOAD_BY_COMMAND = range(8, 11)
 # limits of the voltage and of the voltage across the armature; supply voltage, and its resistance over the armature's
 VOLTAGE_BY_COMMAND, VOLTAGE_BY_ANGLE, VOLTAGE_BY_SPEED, TORQUE_BY_VOLTAGE, BACK_EMF = range(11, 16)
 LARGEST_VOLTAGE, LARGEST_DROP, SUPPLY_VOLTAGE, SUPPLY_SHARE = range(16, 20)
-CONSTANTS = 20
+# linear friction of hub and motor where an effect changes it, else 0
+HUB_VISCOUS, MOTOR_VISCOUS = 20, 21
+CONSTANTS = 22
 
 # --- s: the state; friction's memory of the hub's angle and its torque there; block coordinates z from Z_START on. The motor's
 # place follows the hub's, so that HUB_DIRECTION + body and HELD_HUB + body are a body's

@@ -28,16 +28,26 @@ HIDDEN = {
     "end_stop": ({"stop": 5.0, "stop_at": 0.4}, {"stiffness": 5.0, "upper": 0.4, "lower": -0.4, "damping_time": 0.0}),
     "gear_compliance": ({"gearc": 300.0}, {"stiffness": 300.0, "damping_time": 2.0 / 300.0}),
 }
+#: Effects that act on one another: warming takes dry friction only.
+TOGETHER = {
+    "friction_warmup, asymmetric_viscous": (
+        {"warm": 0.35, "warm_tau": 4.0, "asymv": 0.05},
+        {"friction_warmup": {"share": 0.35, "time_constant": 4.0}, "asymmetric_viscous": {"coefficient": 0.05}},
+    )
+}
+ALL = {name: (settings, {name: values}) for name, (settings, values) in HIDDEN.items()} | TOGETHER
 
 
-@pytest.mark.parametrize("name", HIDDEN)
+@pytest.mark.parametrize("name", ALL)
 @pytest.mark.parametrize("experiment", ["pulse", "square"])
 def test_the_rig_s_recordings_are_met_to_the_noise(name, experiment):
-    settings, values = HIDDEN[name]
+    settings, effects = ALL[name]
     made = simulate(settings, experiment, 1)
     recording = Recording.from_arrays(experiment, made["time"], "current", made["current"], {s: made[s] for s in SIGNALS})
     arm, data = prepare(Arm.load("thesis-fem"), [recording])
-    right = arm.with_effect(name, **values)
+    right = arm
+    for effect, values in effects.items():
+        right = right.with_effect(effect, **values)
     assert score(arm, data).free_run > 3.0
     assert score(right, data).free_run < 1.02
     for level in data.settings.process_noise.screening:  # feedback of the readings does no harm to a model that is right

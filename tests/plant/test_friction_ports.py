@@ -80,3 +80,40 @@ def test_rigid_gears_carry_the_drive_s_torque():
         plant.place()
         ends.append(plant.replay(np.full(40, command))[-1])
     assert np.allclose(ends[0], ends[1], rtol=1e-9)
+
+
+def end_speed(effects: dict[str, dict[str, float]], command: float) -> float:
+    """Speed [rad/s] that a rigid link reaches under a constant command [A]; 0.495 Nm/A act on its axis."""
+    table = {
+        "drive": {"input": "current", "torque_constant": 0.495, "gear_ratio": 1.0, "motor_inertia": 0.0, "limit": 100.0},
+        "hub": {"inertia": 0.01},
+    }
+    arm = Arm.from_table(table | {"effects": effects, "sensors": {"arm_angle": {"noise": 1e-4}}}, "link")
+    plant = arm.plant(0.005)
+    plant.place()
+    plant.replay(np.full(2000, command))
+    size = plant.physical().size // 2
+    return float(plant.physical()[size])
+
+
+@pytest.mark.parametrize(("command", "speed"), [(4.0, (1.98 - 0.3) / 0.12), (-4.0, -(1.98 - 0.3) / 0.08)])
+def test_a_lubricant_s_friction_by_direction_is_whole_where_it_exceeds_the_dry_one(command, speed):
+    effects = {"viscous": {"coefficient": 0.1}, "coulomb": {"torque": 0.3}, "asymmetric_viscous": {"coefficient": 0.02}}
+    assert end_speed(effects, command) == pytest.approx(speed, rel=1e-9)
+
+
+def test_warming_takes_dry_friction_and_leaves_that_of_the_lubricant():
+    effects = {
+        "viscous": {"coefficient": 0.1},
+        "coulomb": {"torque": 0.3},
+        "asymmetric_viscous": {"coefficient": 0.02},
+        "friction_warmup": {"share": 0.5, "time_constant": 0.1},
+    }
+    assert end_speed(effects, -4.0) == pytest.approx(-(1.98 - 0.15) / 0.08, rel=1e-6)
+
+
+def test_a_lubricant_takes_away_all_viscous_friction_at_most_and_does_not_drive():
+    effects = {"viscous": {"coefficient": 0.1}, "coulomb": {"torque": 0.3}, "asymmetric_viscous": {"coefficient": 0.5}}
+    free = end_speed({"coulomb": {"torque": 0.3}}, -0.8)
+    assert end_speed(effects, -0.8) == pytest.approx(free, rel=1e-6)
+    assert free < -90.0
