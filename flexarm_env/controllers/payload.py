@@ -24,6 +24,15 @@ AT_REST, WAIT = 5.0, 10.0
 ENOUGH = 2e4
 
 
+def shows_payload(arm: Arm) -> bool:
+    """Whether an arm has the beam and the readings in which a payload shows."""
+    return arm.has("beam") and {_gage_of(arm), "motor_speed"} <= set(arm.signals)
+
+
+def _gage_of(arm: Arm) -> str:
+    return "strain_base" if "strain_base" in arm.signals else "strain_mid"
+
+
 class PayloadEstimator:
     """Estimates the tip masses of many arms from their fundamental frequencies.
 
@@ -42,8 +51,8 @@ class PayloadEstimator:
     """
 
     def __init__(self, arm: Arm, interval: float) -> None:
-        gage = "strain_base" if "strain_base" in arm.signals else "strain_mid"
-        if gage not in arm.signals or "motor_speed" not in arm.signals or not arm.has("beam"):
+        gage = _gage_of(arm)
+        if not shows_payload(arm):
             raise InputError(
                 f"a payload shows in strain_base or strain_mid and motor_speed, which arm '{arm.name}' lacks; add both"
             )

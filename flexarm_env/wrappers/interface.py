@@ -12,7 +12,7 @@ from flexarm_env.controllers import make_controller
 from flexarm_env.controllers.estimator import Estimator, row_dot
 from flexarm_env.controllers.loads import KnownLoads
 from flexarm_env.controllers.lqg import LQG
-from flexarm_env.controllers.payload import PayloadEstimator
+from flexarm_env.controllers.payload import PayloadEstimator, shows_payload
 from flexarm_env.wrappers.options import InterfaceOptions
 
 Floats = NDArray[np.float64]
@@ -53,7 +53,7 @@ class PolicyInterface:
         self.base = make_controller(options.base, arm, interval) if options.base != "none" else None
         self.loads = KnownLoads(arm)
         self.estimator = Estimator(arm, interval) if options.estimate else None
-        self.weigher = PayloadEstimator(arm, interval) if options.estimate else None
+        self.weigher = PayloadEstimator(arm, interval) if options.estimate and shows_payload(arm) else None
         #: Weight of each new reading in an average (averages, 1, 1).
         self.fresh = 1.0 - np.exp(-interval / np.array(options.averages).reshape(-1, 1, 1))
         self.depth = max([*options.lags, *options.command_lags], default=0) + 1
@@ -73,10 +73,12 @@ class PolicyInterface:
         self.command = np.zeros(count)
         if self.base:
             self.base.reset(count)
-        if self.estimator and self.weigher:
+        if self.estimator:
             self.estimator.start(count)
+            self.state = self.estimator.state
+        if self.weigher:
             self.weigher.start(count)
-            self.state, self.payload = self.estimator.state, self.weigher.payload
+            self.payload = self.weigher.payload
 
     def see(self, observation: NDArray[np.floating[Any]]) -> None:
         """Update by physical observations (count, signals + 1) of a sample."""
@@ -89,8 +91,9 @@ class PolicyInterface:
         self.readings[here], self.target = seen[:, :-1], seen[:, -1]
         if self.base:
             self.wanted = self.base.act(seen) / self.limit
-        if self.estimator and self.weigher:
+        if self.estimator:
             self.state = self.estimator.correct(seen[:, :-1])
+        if self.weigher:
             self.payload = self.weigher.update(seen[:, :-1])
 
     def features(self) -> NDArray[np.float32]:
@@ -112,13 +115,15 @@ class PolicyInterface:
 
     def _estimates(self, estimator: Estimator) -> list[Floats]:
         model, moving = estimator.model, self.state[:, :-1]
-        tip = [name for name in model.names if name.startswith("deflection") and not name.endswith("_rate")][-1]
-        rows = {"hub": "hub", "hub_rate": "hub_rate", "tip": tip, "tip_rate": f"{tip}_rate"}
+        bends = [name for name in model.names if name.startswith("deflection") and not name.endswith("_rate")]
+        rows = {"hub": "hub", "hub_rate": "hub_rate"}
+        if bends:
+            rows |= {"tip": bends[-1], "tip_rate": f"{bends[-1]}_rate"}
         found = {name: row_dot(model.row(state), moving) for name, state in rows.items()}
         found["hub"] = self.target - found["hub"]
         found["friction"] = self.state[:, -1]
         columns = [squeezed(values, FINE_STATE[name])[:, None] for name, values in found.items()]
-        return [*columns, (self.payload / PAYLOAD_SCALE)[:, None]]
+        return [*columns, (self.payload / PAYLOAD_SCALE)[:, None]] if self.weigher else columns
 
     def send(self, action: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
         """Convert an action (count, 1 or 2) to shares of the limit (count, 1) at this sample."""
