@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -72,12 +72,15 @@ class Calibrator:
     def calibrate_constants(self) -> Calibration:
         """Calibrate the nominal constants; only at the arm's own torque noise where more feedback gains nothing.
 
-        They stay as given where calibrated ones are worse on the held-out part: these make up for something else.
+        Where little is left, constants that hardly matter are scanned. They all stay as given where calibrated ones are worse on
+        the held-out part: these make up for something else.
         """
         before = self.score(self.nominal, held_out=False)
         found, after = self.calibrate_by_best_schedule(self.nominal)
         if after.windows > before.windows:
             found = self.calibrate(self.nominal, levels=())
+        else:
+            found = self._scan_weak(found, after)
         is_worse = self.score(found.arm).windows > self.score(self.nominal).windows
         return self.uncalibrated(self.nominal) if is_worse else found
 
@@ -107,7 +110,7 @@ class Calibrator:
             return found
         again, left = self._continue_on_all_data(found)
         if left > most:
-            again, left = self._continue_on_all_data(self._with_undetermined_scanned(found))
+            again, left = self._continue_on_all_data(self._with_weak_scanned(found, most, self._error_on_all_data))
         return again if left <= most else found
 
     def _continue_on_all_data(self, found: Calibration) -> tuple[Calibration, float]:
@@ -126,19 +129,36 @@ class Calibrator:
                 break
         return found, left
 
-    def _with_undetermined_scanned(self, found: Calibration) -> Calibration:
-        """Set each constant on which the fitted part does not depend to the value in its prior that leaves least in the rest.
+    def _scan_weak(self, found: Calibration, now: Score) -> Calibration:
+        """Scan what hardly matters on the fitted part where little is left, and continue from there if that is better."""
+        errors = self.settings.errors
+        if not errors.nothing_left < now.windows <= errors.close:
+            return found
+        scanned = self._with_weak_scanned(found, errors.close, self._fitted_error)
+        other = found if scanned.arm == found.arm else self.calibrate(scanned.arm, levels=())
+        return other if self.score(other.arm, held_out=False).is_better_than(now) else found
 
-        Where an arm sticks only in the rest, the error of that is a step in the static friction: no slope leads there.
+    def _with_weak_scanned(self, found: Calibration, most: float, error: Callable[[Arm], float]) -> Calibration:
+        """Set each constant on which the fitted part hardly depends to the value in its prior of the least error.
+
+        Where an arm rarely sticks, the error is a step in the static friction: no slope leads there.
+
+        Args:
+            found: the calibration.
+            most: error in windows of the fitted part that half a prior to one side leaves, at most.
+            error: to be least.
         """
-        step, most = self.settings.calibrating.scan_step, self.settings.errors.nothing_left
-        x, apply = found.solution.x, found.parameters.apply
+        step, x, apply = self.settings.calibrating.scan_step, found.solution.x, found.parameters.apply
         for along in np.diag([parameter.prior for parameter, _ in found.parameters.pairs(x)]):
             halfway = [apply(found.arm, x + share * along) for share in (-0.5, 0.5)]
-            if min(self.score(arm, held_out=False).windows for arm in halfway) <= most:
+            if min(map(self._fitted_error, halfway)) <= most:
                 values = [x + share * along for share in np.arange(-1.0, 1.0 + step, step)]
-                x = min([x, *values], key=lambda value: self._error_on_all_data(apply(found.arm, value)))
+                x = min([x, *values], key=lambda value: error(apply(found.arm, value)))
         return replace(found, arm=apply(found.arm, x), solution=replace(found.solution, x=x))
+
+    def _fitted_error(self, arm: Arm) -> float:
+        """Measure the error in windows of the fitted part."""
+        return self.score(arm, held_out=False).windows
 
     def _error_on_all_data(self, arm: Arm) -> float:
         """Measure the error in windows of the fitted or of the held-out part, the larger one."""
@@ -189,7 +209,8 @@ class Calibrator:
                 found, now = other, then
             elif not near:
                 break
-        return found
+        scanned = self._scan_weak(found, now)
+        return found if self._is_worse_held_out(scanned, found) else scanned
 
     def _is_worse_held_out(self, other: Calibration, found: Calibration) -> bool:
         """Whether a continued calibration is worse on the held-out part, as where rough errors of the fitted one lead it."""

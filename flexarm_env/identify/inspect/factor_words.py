@@ -64,6 +64,11 @@ def factor_fault(evidence: Evidence, signal: str, value: float, rival: str = "",
     return fault(evidence.recording, signal, "factor", number, text, hint, other=rival)
 
 
+def is_of_unit(command: str, factor: float) -> bool:
+    """Whether the factor of a command is that of a unit in which people record it."""
+    return any(math.isclose(factor, number) for _, _, number in _units(INPUTS[command]))
+
+
 def _number(value: float) -> str:
     """Write a factor with three digits, and without an exponent if it is large."""
     rounded = f"{value:.3g}"
@@ -77,10 +82,14 @@ def _known(evidence: Evidence, signal: str, value: float, is_rough: bool) -> tup
     """
     close = evidence.numbers.likely_factor if is_rough else evidence.numbers.known_factor
     unit = INPUTS.get(signal) or evidence.arm.sensor(signal).unit
-    units = [(other, words, 1.0 / unit_factor(other, unit)) for other, words in USUAL_UNITS.get(unit, {}).items()]
     ratio = evidence.arm.constants["drive"]["gear_ratio"]
     sides = [("", "the gear ratio", ratio), ("", "1/(gear ratio)", 1.0 / ratio)] if ratio != 1.0 else []
     own = {"arm_angle": [*sides, *QUADRATURE], "motor_speed": sides}.get(signal, [])
-    known = [*units, *own, *(USUAL_NUMBERS if is_rough else ())]
+    known = [*_units(unit), *own, *(USUAL_NUMBERS if is_rough else ())]
     unit, words, number = min(known, key=lambda one: abs(math.log(value / one[2])), default=("", "", value))
     return (unit, words, number) if abs(math.log(value / number)) < close else ("", "", value)
+
+
+def _units(unit: str) -> list[tuple[str, str, float]]:
+    """List the other units of a quantity, with the number of each in one SI unit, in words and as a number."""
+    return [(other, words, 1.0 / unit_factor(other, unit)) for other, words in USUAL_UNITS.get(unit, {}).items()]

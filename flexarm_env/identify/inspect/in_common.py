@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from flexarm_env.identify.inspect.evidence import Evidence
+from flexarm_env.identify.inspect.factor_words import is_of_unit
 from flexarm_env.identify.inspect.fault import Fault
 
 Key = tuple[str, str, str]
@@ -47,11 +48,16 @@ def _middle(faults: Sequence[Fault]) -> Fault:
 
 
 def _is_certain(evidence: Evidence, fault: Fault) -> bool:
-    """Whether one recording shows a fault by itself: any but a factor or a lag that a missing effect could make in it."""
+    """Whether one recording shows a fault by itself: any but a factor or a lag that a missing effect could make in it.
+
+    A drive that is always at a limit looks like a factor of the command.
+    """
     if fault.kind == "clock":
         late = [fault.signal] if fault.signal else evidence.signals
         return all(evidence.run.leaves_noise(signal, evidence.late[signal]) for signal in late)
-    if fault.kind != "factor" or not fault.value or fault.signal not in evidence.signals:
+    if fault.kind != "factor" or not fault.value:
         return True
+    if fault.signal not in evidence.signals:
+        return is_of_unit(fault.signal, fault.value)
     far = abs(math.log(fault.value)) > math.log(evidence.numbers.plausible)
     return far or evidence.run.leaves_noise(fault.signal, evidence.at_once[fault.signal])

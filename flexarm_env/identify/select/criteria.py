@@ -104,9 +104,13 @@ class ThresholdCriteria:
         return lambda s: s.excess
 
     def is_sufficient(self, found: Model) -> bool:
-        """Whether the error is near the noise, or the excess below the least that an effect must remove."""
-        score = found.score
-        return score.windows < self.settings.errors.nothing_left or score.excess < self._least(lambda s: s.excess)
+        """Whether the error is near the noise, or the excess below the least that an effect must remove.
+
+        Where the fitted part is not explained, what is missing shows there alone.
+        """
+        score, errors = found.score, self.settings.errors
+        little = score.windows < errors.nothing_left or score.excess < self._least(lambda s: s.excess)
+        return little and found.fitted_score.windows < errors.explained
 
     def is_worthwhile(self, without: Model, found: Model, measure: Measure) -> bool:
         """Whether one more effect removes a share of the excess, and more than fits leave that end early."""

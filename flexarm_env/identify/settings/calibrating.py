@@ -82,7 +82,7 @@ class Calibrating:
     )
     scan_step: float = tuned(
         0.05,
-        "Step at which a constant that the fitted part leaves undetermined is scanned, in its prior's standard deviations.",
+        "Step at which a constant on which the fitted part hardly depends is scanned, in its prior's standard deviations.",
         "of a rigid axis that sticks once, late, the static friction within 4 % meets the rest, and its prior is 50 % wide",
     )
     memory: float = tuned(
