@@ -57,3 +57,20 @@ def test_a_model_that_lacks_an_effect_in_the_rest_is_to_blame():
 
 def test_nothing_is_said_to_be_missing(recording):
     assert diagnose(axis(0.7 * STICTION), [recording], jobs=1).verdict in ("parameters", "nothing_missing")
+
+
+@pytest.mark.parametrize("seed", [4, 24])
+def test_a_slow_axis_is_explained_though_its_error_is_a_step_in_static_friction(seed: int) -> None:
+    machine = {"viscous": {"coefficient": 0.00343}, "coulomb": {"torque": 0.00392}, "stiction": {"extra": 0.001134}}
+    model = {"viscous": {"coefficient": 0.003716}, "coulomb": {"torque": 0.003755}, "stiction": {"extra": 0.0008}}
+    drive = {"input": "torque", "gear_ratio": 1.0, "motor_inertia": 0.0, "limit": 0.05}
+    sensors = {"arm_angle": {"noise": 1e-4}, "motor_speed": {"noise": 5e-3}}
+    true, given = (
+        Arm.from_table({"drive": drive, "hub": {"inertia": inertia}, "effects": effects, "sensors": sensors}, "axis")
+        for inertia, effects in ((0.0013315, machine), (0.0013827, model))
+    )
+    nominal, data = prepare(given, [simulate(true, "sweep", duration=8.0, rate=500.0, seed=seed)])
+    calibrator, found = Calibrator(nominal, data).choose_hold_out()
+    errors = [calibrator.score(found.arm, held_out).windows for held_out in (False, True)]
+    assert max(errors) < 1.05
+    assert found.arm.value("effects.stiction.extra") == pytest.approx(0.001134, rel=0.05)

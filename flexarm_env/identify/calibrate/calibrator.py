@@ -110,7 +110,7 @@ class Calibrator:
             return found
         again, left = self._continue_on_all_data(found)
         if left > most:
-            again, left = self._continue_on_all_data(self._with_weak_scanned(found, most, self._error_on_all_data))
+            again, left = self._continue_on_all_data(self._with_weak_scanned(found, self._error_on_all_data))
         return again if left <= most else found
 
     def _continue_on_all_data(self, found: Calibration) -> tuple[Calibration, float]:
@@ -134,26 +134,22 @@ class Calibrator:
         errors = self.settings.errors
         if not errors.nothing_left < now.windows <= errors.close:
             return found
-        scanned = self._with_weak_scanned(found, errors.close, self._fitted_error)
+        scanned = self._with_weak_scanned(found, self._fitted_error)
         other = found if scanned.arm == found.arm else self.calibrate(scanned.arm, levels=())
         return other if self.score(other.arm, held_out=False).is_better_than(now) else found
 
-    def _with_weak_scanned(self, found: Calibration, most: float, error: Callable[[Arm], float]) -> Calibration:
-        """Set each constant on which the fitted part hardly depends to the value in its prior of the least error.
+    def _with_weak_scanned(self, found: Calibration, error: Callable[[Arm], float]) -> Calibration:
+        """Set each constant of which half a prior makes little difference on the fitted part to where an error is least.
 
         Where an arm rarely sticks, the error is a step in the static friction: no slope leads there.
-
-        Args:
-            found: the calibration.
-            most: error in windows of the fitted part that half a prior to one side leaves, at most.
-            error: to be least.
         """
-        step, x, apply = self.settings.calibrating.scan_step, found.solution.x, found.parameters.apply
+        settings, x, apply = self.settings, found.solution.x, found.parameters.apply
+        shares = np.arange(-1.0, 1.0 + settings.calibrating.scan_step, settings.calibrating.scan_step)
         for along in np.diag([parameter.prior for parameter, _ in found.parameters.pairs(x)]):
             halfway = [apply(found.arm, x + share * along) for share in (-0.5, 0.5)]
-            if min(map(self._fitted_error, halfway)) <= most:
-                values = [x + share * along for share in np.arange(-1.0, 1.0 + step, step)]
-                x = min([x, *values], key=lambda value: error(apply(found.arm, value)))
+            if min(map(self._fitted_error, halfway)) <= settings.errors.close:
+                values = [x, *(np.where(along > 0.0, share * along, x) for share in shares)]
+                x = min(values, key=lambda value: error(apply(found.arm, value)))
         return replace(found, arm=apply(found.arm, x), solution=replace(found.solution, x=x))
 
     def _fitted_error(self, arm: Arm) -> float:
