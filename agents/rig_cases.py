@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from tests.rig.settings import GRAVITY
+
 PROJECT = Path(__file__).resolve().parent.parent
+#: A mass at the end of a link of 1 m [kg], and the torque of 1 kg there about an axis that leans by 0.25 rad [Nm].
+PAYLOAD, WEIGHT = 0.2, GRAVITY * math.sin(0.25)
 ARMS = PROJECT / "configs" / "agents" / "rig" / "arms"
 
 
@@ -37,7 +42,12 @@ CASES: Mapping[str, Case] = {
     "dead-zone": Case({"dead": 0.4}, "dead_zone"),
     "bias": Case({"bias": 0.15}, "constant_torque"),
     "lag": Case({"lag": 0.02}, "current_lag"),
-    "payload": Case({"payload": 0.12}, "payload", ARMS / "tilted.toml", {"tilt": 0.25}),
+    "payload": Case(
+        {"jh": 0.14256 + PAYLOAD, "weight": WEIGHT * (0.42381 / 2.0 + PAYLOAD)},
+        "payload",
+        ARMS / "leaning-link.toml",
+        {"elements": 0, "jh": 0.14256, "weight": WEIGHT * 0.42381 / 2.0},
+    ),
     "soft-gears": Case(
         {"gearc": 60.0, "mesh_c": 0.1}, "gear_compliance", ARMS / "rigid-link.toml", {"elements": 0, "jh": 0.14256}
     ),

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from flexarm_env.arm import Arm
 
 MODES = ("moving", "stuck")
-INPUTS = ("command", "hub_torque")
+INPUTS = ("command", "hub_torque", "weight")
 #: A pair of eigenvalues with a higher damping ratio is not counted as a vibration.
 LARGEST_DAMPING = 0.95
 #: Eigenvalues below this [rad/s] belong to a rigid motion.
@@ -34,7 +34,8 @@ class LinearArm:
         interval: sampling time; inputs are held over it [s].
         states: names of the states: "hub", "deflection_1", … [rad, m], their rates "hub_rate", …, and "extra_1", … for
             lagged current and filtered sensors.
-        inputs: "command" [A or V] and "hub_torque", an external torque on the hub [Nm].
+        inputs: "command" [A or V], "hub_torque", an external torque on the hub [Nm], and "weight", a force in proportion to mass
+            on beam and payload, by its torque about the axis without payload [Nm].
         outputs: names of the signals.
         dynamics: (states, states) [1/s].
         forcing: (states, inputs).
@@ -88,7 +89,7 @@ def linearise(arm: Arm, mode: str, interval: float) -> LinearArm:
     model = assemble(structure := arm.structure())
     bodies = 2 if structure.separate_motor else 1
     found = mode_of(structure, model, sum((HUB_STUCK, MOTOR_STUCK)[:bodies]) if mode == "stuck" else 0)
-    drivers = found.forcing[:, [COMMAND, HUB_TORQUE]]
+    drivers = np.column_stack([found.forcing[:, [COMMAND, HUB_TORQUE]], found.beam_forcing[:, -1]])
     width, states = found.modal.shape
     blocks = _blocks(found.c0, found.c1)
     # The angles of held bodies are inputs of the mode, and states of this model.

@@ -7,6 +7,7 @@ from scipy.linalg import solve_discrete_are
 
 from flexarm_env.arm import Arm
 from flexarm_env.controllers.base import Floats
+from flexarm_env.controllers.loads import Weight
 from flexarm_env.controllers.slow import slow_part
 from flexarm_env.errors import InputError
 
@@ -50,10 +51,15 @@ class Estimator:
         self.transition[:size, size] = self.model.response[:, 1]
         self.response = np.append(self.model.response[:, 0], 0.0)
         self.direct = self.model.direct[:, 0]
+        weight = Weight.of(arm)
+        #: Row of the hub's angle; largest torque of the weight without payload [Nm], the angle of balance [rad], and the weight's
+        #: effect, per Nm, on the state in a sample and on the readings.
+        self.hub, self.heaviest, self.uphill = self.model.row("hub"), weight.torque, weight.uphill
+        self.fall, self.sag = np.append(self.model.response[:, 2], 0.0), self.model.direct[:, 2]
         #: Effect of the arm's constant torque on the state in a sample, and on the readings.
         self.drift = np.append(self.model.response[:, 1], 0.0) * (torque := arm.structure().hub_torque)
         self.offset = self.model.offset + self.model.direct[:, 1] * torque
-        self.output = np.hstack([self.model.output, self.model.direct[:, 1:]])
+        self.output = np.hstack([self.model.output, self.model.direct[:, 1:2]])
         noise = [max(arm.reading_noise(signal), LEAST_NOISE) for signal in arm.sensors]
         extra = [STRAIN_LEFT_OUT * arm.sensor(signal).strain for signal in arm.sensors]
         self.gain = _gain(
@@ -82,6 +88,8 @@ class Estimator:
             angle = readings[:, self._angle] - self.model.offset[self._angle]
             self.state[:, :-1] = angle[:, None] * np.linalg.pinv(self.model.lift)[:, self.model.names.index("hub")]
         expected = product(self.output, self.state) + self._sent[:, None] * self.direct + self.offset
+        if np.any(self.heaviest):
+            expected += self._weight(self.state)[:, None] * self.sag
         self.state = self.state + product(self.gain, readings - expected)
         return self.state
 
@@ -92,7 +100,14 @@ class Estimator:
 
     def ahead(self, state: Floats, command: Floats) -> Floats:
         """Compute the state (count, slow + 1) a sample after another one, under commands (count,) behind the drive."""
-        return product(self.transition, state) + command[:, None] * self.response + self.drift
+        ahead = product(self.transition, state) + command[:, None] * self.response + self.drift
+        if np.any(self.heaviest):
+            ahead += self._weight(state)[:, None] * self.fall
+        return ahead
+
+    def _weight(self, state: Floats) -> Floats:
+        """Compute the torque of the weight without payload (count,) [Nm] at the estimated angles."""
+        return self.heaviest * np.sin(row_dot(self.hub, state[:, :-1]) - self.uphill)
 
     def amend(self, extra: Floats) -> None:
         """Add the effect of a command extra (count,) [A or V] to that of the last prediction."""
@@ -102,7 +117,8 @@ class Estimator:
     def reading(self, signal: str) -> Floats:
         """Estimate a sensor's reading without noise and offset (count,)."""
         place = self.model.signals.index(signal)
-        return row_dot(self.output[place], self.state) + self._sent * self.direct[place]
+        found = row_dot(self.output[place], self.state) + self._sent * self.direct[place]
+        return found + self._weight(self.state) * self.sag[place] if np.any(self.heaviest) else found
 
 
 def product(matrix: Floats, vectors: Floats) -> Floats:

@@ -1,11 +1,16 @@
-"""Compensation of the modelled arm's static loads, common to all control laws: springs, constant torques, a dead zone."""
+"""Compensation of the modelled arm's static loads, common to all control laws: springs, torques, weight, a dead zone."""
 
 from __future__ import annotations
+
+import cmath
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
+from flexarm_env.machine import weight
+from flexarm_env.plant.assembly import assemble
 
 Floats = NDArray[np.float64]
 
@@ -14,17 +19,49 @@ Floats = NDArray[np.float64]
 EDGE = 0.25
 
 
+@dataclass(frozen=True)
+class Weight:
+    """The weight of an arm.
+
+    Attributes:
+        torque: largest one about the axis without payload [Nm].
+        uphill: angle at which the arm balances upright [rad].
+        share: torque with the payload over that without.
+    """
+
+    torque: float
+    uphill: float
+    share: float
+
+    @classmethod
+    def of(cls, arm: Arm) -> Weight:
+        """Sum the weight that the constants give and that of a tilted base."""
+        tilt = dict(arm.present()).get("base_tilt", {"torque": 0.0, "uphill": 0.0})
+        parts = (weight(arm.constants), (tilt["torque"], tilt["uphill"]))
+        total = sum(cmath.rect(torque, uphill) for torque, uphill in parts)
+        if not total:
+            return cls(0.0, 0.0, 1.0)
+        # the last column is the force of a weight of 1 Nm about the axis without payload
+        return cls(abs(total), cmath.phase(total), float(assemble(arm.structure()).beam_force[0, -1]))
+
+    def about_axis(self, angle: Floats) -> Floats:
+        """Compute the torque with the payload (count,) [Nm] on a straight arm at hub angles (count,) [rad]."""
+        return self.share * self.torque * np.sin(angle - self.uphill)
+
+
 class KnownLoads:
     """Compensates known loads at the target, and a known dead zone.
 
     Args:
-        arm: modelled, with `cable_stiffness`, `constant_torque` or `dead_zone` among its effects, or none of them.
+        arm: modelled, with a weight, or `cable_stiffness`, `constant_torque`, `base_tilt`, `payload` or `dead_zone` among its
+            effects, or none of them.
     """
 
     def __init__(self, arm: Arm) -> None:
         structure = arm.structure()
-        torque = structure.torque_by_command
+        self.per_command = torque = structure.torque_by_command
         self.stiffness, self.torque = structure.hub_stiffness / torque, structure.hub_torque / torque
+        self.weight = Weight.of(arm)
         self.dead_zone = float(dict(arm.present()).get("dead_zone", {}).get("width", 0.0))
 
     def compensated(self, command: Floats, target: Floats) -> Floats:
@@ -36,7 +73,7 @@ class KnownLoads:
 
     def steady(self, target: Floats) -> Floats:
         """Compute the commands (count,) [A or V] that hold arms at targets (count,) [rad] against their loads."""
-        return self.stiffness * target - self.torque
+        return self.stiffness * target - self.torque - self.weight.about_axis(target) / self.per_command
 
     def behind_dead_zone(self, command: Floats) -> Floats:
         """Compute the commands (count,) behind the dead zone."""

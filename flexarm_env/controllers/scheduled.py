@@ -12,6 +12,8 @@ from flexarm_env.controllers.base import Floats
 from flexarm_env.controllers.lqg import LQG, LQGDesign
 from flexarm_env.controllers.payload import PayloadEstimator
 
+#: What differs between the estimators of the designs.
+ESTIMATOR = ("transition", "response", "hub", "heaviest", "uphill", "fall", "sag", "drift", "output", "direct", "offset", "gain")
 #: Payloads [kg] of the designs, above the modelled arm's own; each estimate uses the nearest.
 PAYLOADS = (0.0, 0.1, 0.2, 0.3, 0.45)
 
@@ -63,7 +65,7 @@ class ScheduledLQG(LQG):
 
     def _adopt(self) -> None:
         """Select the matrices of each arm's design."""
-        for name in ("transition", "response", "drift", "output", "direct", "offset", "gain"):
+        for name in ESTIMATOR:
             setattr(self.estimator, name, self._each([getattr(design.estimator, name) for design in self._designs]))
         for name in ("gain", "stiffness", "_hub", "_furthest"):
             setattr(self, name, self._each([getattr(design, name) for design in self._designs]))

@@ -20,9 +20,9 @@ class SlowPart:
         names: of the physical states x (states,).
         signals: names of the outputs.
         transition: (slow, slow).
-        response: (slow, 2) to command [A or V] and torque on the hub [Nm].
+        response: (slow, 3) to command [A or V], torque on the hub and weight [Nm].
         output: (outputs, slow).
-        direct: (outputs, 2), static contribution of the fast motion.
+        direct: (outputs, 3), static contribution of the fast motion.
         offset: (outputs,) readings at rest.
         lift: (states, slow).
     """
@@ -58,8 +58,8 @@ def slow_part(arm: Arm, interval: float, highest_frequency: float, order: int | 
     slow, fast = upper[:count, :count], upper[count:, count:]
     mixed = solve_sylvester(slow, -fast, -upper[:count, count:])
     whole = np.hstack([basis[:, :count], basis[:, :count] @ mixed + basis[:, count:]])
-    forcing = np.linalg.solve(whole, model.forcing)
-    step = expm(np.block([[slow, forcing[:count]], [np.zeros((2, count + 2))]]) * interval)
+    forcing, inputs = np.linalg.solve(whole, model.forcing), len(model.inputs)
+    step = expm(np.block([[slow, forcing[:count]], [np.zeros((inputs, count + inputs))]]) * interval)
     return SlowPart(
         names=model.states,
         signals=model.outputs,

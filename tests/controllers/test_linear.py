@@ -71,13 +71,13 @@ def test_discrete_matrices_follow_from_the_continuous_ones(arm):
     for mode in ("moving", "stuck"):
         linear = linearise(arm, mode, INTERVAL)
         size = len(linear.states)
-        step = scipy.linalg.expm(np.block([[linear.dynamics, linear.forcing], [np.zeros((2, size + 2))]]) * INTERVAL)
+        step = scipy.linalg.expm(np.block([[linear.dynamics, linear.forcing], [np.zeros((3, size + 3))]]) * INTERVAL)
         if mode == "stuck":  # a held body has no speed, whatever it had before
             rates = [place for place, state in enumerate(linear.states) if state in ("hub_rate", "motor_rate")]
             step[rates, rates] = 0.0
         np.testing.assert_allclose(linear.transition, step[:size, :size], atol=1e-8 * np.abs(step).max())
         np.testing.assert_allclose(linear.response, step[:size, size:], atol=1e-8)
-    assert linear.inputs == ("command", "hub_torque")
+    assert linear.inputs == ("command", "hub_torque", "weight")
     assert linear.states[0] == "hub"
 
 
@@ -86,3 +86,12 @@ def test_bad_input_gets_one_line(thesis, mode, interval, word):
     with pytest.raises(InputError, match=word) as error:
         linearise(thesis, mode, interval)
     assert "\n" not in str(error.value)
+
+
+def test_the_weight_of_a_rigid_link_is_a_torque_on_the_hub_to_which_the_payload_adds():
+    drive = {"input": "torque", "gear_ratio": 1.0, "motor_inertia": 0.0, "limit": 10.0}
+    link = {"mass": 0.5, "centre": 0.4, "length": 1.0, "inertia": 0.1, "vertical": True, "hangs_at": 0.0}
+    arm = Arm.from_table({"drive": drive, "link": link, "sensors": {"arm_angle": {"noise": 1e-4}}}, "pendulum")
+    for heavy, share in ((arm, 1.0), (arm.with_effect("payload", mass=0.3), 1.0 + 0.3 / (0.5 * 0.4))):
+        _, torque, weight = linearise(heavy, "moving", INTERVAL).forcing.T
+        np.testing.assert_allclose(weight, share * torque, rtol=1e-12)

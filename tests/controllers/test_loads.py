@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from controllers.loop import INTERVAL, slew
 
+from flexarm_env import Arm
 from flexarm_env.controllers import CONTROLLERS, make_controller
 from flexarm_env.controllers.loads import KnownLoads
 
@@ -64,3 +65,37 @@ def test_every_controller_starts_a_slew_with_the_load_met(thesis, name):
         # at its target, so that no law wants anything
         first.append(float(controller.act(np.array([0.0, 0.0, 0.0, 0.0, 0.0]))))
     assert first[1] - first[0] == pytest.approx(-0.05 / PER_AMP, rel=1e-9)
+
+
+def test_the_weight_of_beam_and_payload_is_held_at_the_target(thesis):
+    leaning = thesis.with_effect("base_tilt", torque=0.2, uphill=0.4)
+    target = np.array([-1.0, 0.4, 1.7])
+    held = 0.2 * np.sin(target - 0.4)
+    np.testing.assert_allclose(PER_AMP * KnownLoads(leaning).steady(target), -held, atol=1e-12)
+    # a payload at the tip weighs as much as it does, over half the beam's mass
+    payload = leaning.with_effect("payload", mass=0.1)
+    half = 0.5 * thesis.value("beam.mass_per_length") * thesis.value("beam.length")
+    np.testing.assert_allclose(PER_AMP * KnownLoads(payload).steady(target), -held * (1.0 + 0.1 / half), atol=1e-12)
+
+
+def test_weights_of_a_link_and_of_a_tilted_base_add_up():
+    drive = {"input": "torque", "gear_ratio": 1.0, "motor_inertia": 0.0, "limit": 10.0}
+    link = {"mass": 0.5, "centre": 0.4, "length": 1.0, "inertia": 0.1, "vertical": True, "hangs_at": 0.0}
+    arm = Arm.from_table({"drive": drive, "link": link, "sensors": {"arm_angle": {"noise": 1e-4}}}, "pendulum")
+    both = arm.with_effect("base_tilt", torque=0.3, uphill=0.0)
+    target = np.array([0.3, 1.2])
+    hangs = 0.5 * 0.4 * 9.80665 * np.sin(target)
+    np.testing.assert_allclose(KnownLoads(arm).steady(target), hangs, rtol=1e-12)
+    np.testing.assert_allclose(KnownLoads(both).steady(target), hangs - 0.3 * np.sin(target), rtol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["pd", "lqg", "lqg_scheduled", "mpc"])
+def test_a_leaning_arm_ends_where_the_level_one_does(thesis, name):
+    """Where its weight is not known, that pulls it ten degrees away, and bends the beam, which looks like a payload."""
+    leaning = thesis.with_effect("base_tilt", torque=0.5, uphill=3.3)
+
+    def end(arm, believed):
+        return abs(slew(arm, make_controller(name, believed, INTERVAL), 5.0).error[-100:].mean())
+
+    assert end(leaning, leaning) < end(thesis, thesis) + 2.0
+    assert end(leaning, thesis) > end(thesis, thesis) + 10.0
