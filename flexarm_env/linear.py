@@ -115,6 +115,19 @@ def linearise(arm: Arm, mode: str, interval: float) -> LinearArm:
     )
 
 
+def share_of_payload(arm: Arm) -> float:
+    """Compute the torque of the payload's weight about the axis over that of the arm's own weight.
+
+    Example:
+        >>> from flexarm_env import Arm
+        >>> arm = Arm.load("thesis").with_effect("payload", mass=0.1)  # on a beam of 0.42381 kg, whose half counts
+        >>> round(share_of_payload(arm), 4)
+        0.4719
+    """
+    # the last column is the force of a weight of 1 Nm about the axis without payload
+    return float(assemble(arm.structure()).beam_force[0, -1]) - 1.0
+
+
 def _blocks(c0: Matrix, c1: Matrix) -> Matrix:
     """Assemble the dynamics of the mode's blocks, (2 blocks, 2 blocks)."""
     dynamics, place = np.zeros((2 * len(c0), 2 * len(c0))), np.arange(0, 2 * len(c0), 2)

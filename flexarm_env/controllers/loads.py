@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
+from flexarm_env.linear import share_of_payload
 from flexarm_env.machine import weight
-from flexarm_env.plant.assembly import assemble
 
 Floats = NDArray[np.float64]
 
@@ -41,8 +41,7 @@ class Weight:
         total = sum(cmath.rect(torque, uphill) for torque, uphill in parts)
         if not total:
             return cls(0.0, 0.0, 1.0)
-        # the last column is the force of a weight of 1 Nm about the axis without payload
-        return cls(abs(total), cmath.phase(total), float(assemble(arm.structure()).beam_force[0, -1]))
+        return cls(abs(total), cmath.phase(total), 1.0 + share_of_payload(arm))
 
     def about_axis(self, angle: Floats) -> Floats:
         """Compute the torque with the payload (count,) [Nm] on a straight arm at hub angles (count,) [rad]."""
