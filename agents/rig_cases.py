@@ -10,8 +10,10 @@ from pathlib import Path
 from tests.rig.settings import GRAVITY
 
 PROJECT = Path(__file__).resolve().parent.parent
-#: A mass at the end of a link of 1 m [kg], and the torque of 1 kg there about an axis that leans by 0.25 rad [Nm].
-PAYLOAD, WEIGHT = 0.2, GRAVITY * math.sin(0.25)
+#: Mass [kg] and inertia [kg m²] of a rigid link of 1 m, as in the files of its arms, and a mass at its end [kg].
+LINK_MASS, LINK_INERTIA, PAYLOAD = 0.42381, 0.14256, 0.2
+#: Torque of 1 kg at that end about an axis that leans by 0.25 rad [Nm].
+TORQUE_PER_MASS = GRAVITY * math.sin(0.25)
 ARMS = PROJECT / "configs" / "agents" / "rig" / "arms"
 
 
@@ -43,13 +45,13 @@ CASES: Mapping[str, Case] = {
     "bias": Case({"bias": 0.15}, "constant_torque"),
     "lag": Case({"lag": 0.02}, "current_lag"),
     "payload": Case(
-        {"jh": 0.14256 + PAYLOAD, "weight": WEIGHT * (0.42381 / 2.0 + PAYLOAD)},
+        {"jh": LINK_INERTIA + PAYLOAD, "weight": TORQUE_PER_MASS * (LINK_MASS / 2.0 + PAYLOAD)},
         "payload",
         ARMS / "leaning-link.toml",
-        {"elements": 0, "jh": 0.14256, "weight": WEIGHT * 0.42381 / 2.0},
+        {"elements": 0, "jh": LINK_INERTIA, "weight": TORQUE_PER_MASS * LINK_MASS / 2.0},
     ),
     "soft-gears": Case(
-        {"gearc": 60.0, "mesh_c": 0.1}, "gear_compliance", ARMS / "rigid-link.toml", {"elements": 0, "jh": 0.14256}
+        {"gearc": 60.0, "mesh_c": 0.1}, "gear_compliance", ARMS / "rigid-link.toml", {"elements": 0, "jh": LINK_INERTIA}
     ),
 }
 

@@ -63,7 +63,7 @@ def report_of(result: Mapping[str, Any]) -> str:
     for case, found in result["cases"].items():
         diagnosis = result["diagnoses"][case]
         named = ", ".join(diagnosis["effects"]) or "none named"
-        lines += ["", f"## {case}: {diagnosis['settings']}, by {diagnosis['nominal']}", ""]
+        lines += ["", f"## {case}: {diagnosis['settings']}, nominal arm {diagnosis['nominal']}", ""]
         lines.append(f"Hidden: {diagnosis['hidden']}. Diagnosis: `{diagnosis['verdict']}`, {named}, in {diagnosis['seconds']} s.")
         lines += ["", row(["for the arm", "runs", *(heading for _, heading, _ in COLUMNS)]), "|---|" + "---:|" * 4]
         for name, cell in found["cells"].items():

@@ -49,8 +49,13 @@ def test_the_machine_does_what_the_nominal_arm_does_where_nothing_is_hidden(case
 
 
 def test_an_agent_observes_only_what_its_machine_measures() -> None:
-    angle_only = Machine({"noise": 0.0}, 0, 1, 200.0, ("strain_base", "arm_angle"))
-    assert angle_only.readings().shape == (2,)
+    every, few = Machine({}, 0, 3, 200.0), Machine({}, 0, 3, 200.0, ("strain_base", "arm_angle"))
+    for machine in (every, few):
+        machine.move(3.0)
+        machine.move(3.0)
+    angle, *_, strain = every.readings()
+    assert 0.0 != strain != angle != 0.0
+    assert few.readings().tolist() == [strain, angle]
 
 
 def test_what_is_hidden_is_in_the_catalogue_and_not_in_the_nominal_arm() -> None:
