@@ -11,7 +11,7 @@ from flexarm_env import Arm, Recording
 from flexarm_env.identify.calibrate.calibration import Calibration
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.replay.dataset import prepare
-from flexarm_env.identify.select.screen import best_trials, try_effect
+from flexarm_env.identify.select.screen import try_effect
 from flexarm_env.identify.select.signatures import baseline
 from flexarm_env.identify.select.starts import candidates
 
@@ -54,10 +54,10 @@ def best_fit_wins(stepped: dict[str, Any]) -> dict[str, Any]:
 def _best(calibrator: Calibrator, found: Calibration) -> tuple[str, Calibration] | None:
     """Find the effect with the best fit when added, and the arm refitted with it."""
     base = baseline(found, calibrator.dataset)
-    trials = [trial for name in candidates(found.arm) for trial in try_effect(base, name)]
+    trials = [trial for name in candidates(found.arm) for trial in try_effect([base], name)]
     if not trials:
         return None
-    best = min(best_trials(trials), key=lambda trial: trial.cost)
+    best = min(trials, key=lambda trial: trial.cost)
     return best.effect, calibrator.calibrate(best.arm)
 
 

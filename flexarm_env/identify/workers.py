@@ -16,6 +16,7 @@ from typing import Any, Literal
 
 from joblib import Parallel, delayed, parallel_config
 from joblib.externals.loky.backend import resource_tracker as loky_tracker
+from threadpoolctl import threadpool_limits
 
 from flexarm_env.errors import InputError
 from flexarm_env.identify.deadline import Deadline
@@ -86,9 +87,14 @@ class Workers:
                 interrupts.close()
                 yield from results
 
-    def threads(self) -> parallel_config:
-        """Open a context in which columns of Jacobians are computed in threads: replays release the interpreter."""
-        return parallel_config(backend="threading", n_jobs=self.jobs)
+    @contextmanager
+    def threads(self) -> Iterator[None]:
+        """Open a context in which columns of Jacobians are computed in threads: replays release the interpreter.
+
+        Linear algebra takes one thread there: its matrices are narrow, and more threads sum in another order on other machines.
+        """
+        with parallel_config(backend="threading", n_jobs=self.jobs), threadpool_limits(limits=1, user_api="blas"):
+            yield
 
 
 @contextmanager

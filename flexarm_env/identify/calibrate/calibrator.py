@@ -56,6 +56,24 @@ class Calibrator:
         levels = self.settings.process_noise.calibration if levels is None else levels
         return self._run_schedule(arm, levels, numbers.passes, numbers.iterations)
 
+    def calibrate_rival(self, arm: Arm, thorough: bool = False) -> Calibration | None:
+        """Calibrate an arm that would have to leave only noise; None as soon as more than `errors.close` is left.
+
+        Under observers a model that lacks nothing leaves only noise wherever it starts, so the first levels show which one does.
+
+        Args:
+            arm: where to start.
+            thorough: whether to start from the nominal constants as well.
+        """
+        numbers, most = self.settings.calibrating, self.settings.errors.close
+        for start in (arm, self.nominal_with_effects_of(arm))[: 1 + thorough]:
+            found = self._schedule(start, numbers.iterations).run(
+                self._noises(start, self.settings.process_noise.calibration), numbers.passes, most
+            )
+            if found is not None:
+                return self.restart_from_nominal(found) if thorough else found
+        return None
+
     def calibrate_briefly(self, arm: Arm) -> tuple[float, Calibration]:
         """Calibrate an arm in a few steps; also give its error in windows on the fitted part."""
         found = self._run_schedule(arm, self.settings.process_noise.brief, 0, self.settings.calibrating.brief_iterations)
@@ -139,17 +157,17 @@ class Calibrator:
         return other if self.score(other.arm, held_out=False).is_better_than(now) else found
 
     def _with_weak_scanned(self, found: Calibration, error: Callable[[Arm], float]) -> Calibration:
-        """Set each constant of which half a prior makes little difference on the fitted part to where an error is least.
+        """Set each constant that changes the fitted part by less than the noise to where an error is least.
 
         Where an arm rarely sticks, the error is a step in the static friction: no slope leads there.
         """
-        settings, x, apply = self.settings, found.solution.x, found.parameters.apply
-        shares = np.arange(-1.0, 1.0 + settings.calibrating.scan_step, settings.calibrating.scan_step)
-        for along in np.diag([parameter.prior for parameter, _ in found.parameters.pairs(x)]):
-            halfway = [apply(found.arm, x + share * along) for share in (-0.5, 0.5)]
-            if min(map(self._fitted_error, halfway)) <= settings.errors.close:
-                values = [x, *(np.where(along > 0.0, share * along, x) for share in shares)]
-                x = min(values, key=lambda value: error(apply(found.arm, value)))
+        numbers, x, apply = self.settings.calibrating, found.solution.x, found.parameters.apply
+        shares = np.arange(-1.0, 1.0 + numbers.scan_step, numbers.scan_step)
+        j, priors = found.solution.jacobian, found.parameters.priors
+        changes = numbers.weak * priors * np.linalg.norm(j, axis=0) / np.sqrt(max(len(j), 1))
+        for along in np.diag(priors)[changes < 1.0]:
+            values = [x, *(np.where(along > 0.0, share * along, x) for share in shares)]
+            x = min(values, key=lambda value: error(apply(found.arm, value)))
         return replace(found, arm=apply(found.arm, x), solution=replace(found.solution, x=x))
 
     def _fitted_error(self, arm: Arm) -> float:
@@ -242,7 +260,15 @@ class Calibrator:
 
     def _run_schedule(self, arm: Arm, levels: Sequence[float], passes: int, iterations: int) -> Calibration:
         """Calibrate through levels of process noise, over the rms torque of the drive, and in passes at the arm's own."""
+        noises = self._noises(arm, levels)
+        found = self._schedule(arm, iterations).run(noises, passes if noises else max(passes, 1))
+        assert found is not None  # however much it leaves
+        return found
+
+    def _noises(self, arm: Arm, levels: Sequence[float]) -> list[float]:
+        """Convert levels of process noise, over the rms torque of the drive, to those [Nm] above an arm's own."""
         scale, own = torque_scale(arm, self.dataset.runs), arm.constants["drive"]["torque_noise"]
-        noises = [level * scale for level in levels if level * scale > own]
-        schedule = Schedule(arm, self.dataset, free_parameters(arm, self.nominal, self.dataset), iterations)
-        return schedule.run(noises, passes if noises else max(passes, 1))
+        return [level * scale for level in levels if level * scale > own]
+
+    def _schedule(self, arm: Arm, iterations: int) -> Schedule:
+        return Schedule(arm, self.dataset, free_parameters(arm, self.nominal, self.dataset), iterations)

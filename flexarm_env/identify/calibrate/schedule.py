@@ -34,7 +34,7 @@ class Schedule:
     parameters: FitParameters
     iterations: int
 
-    def run(self, levels: Sequence[float], passes: int) -> Calibration:
+    def run(self, levels: Sequence[float], passes: int, most: float = np.inf) -> Calibration | None:
         """Calibrate through levels [Nm], then at the arm's own torque noise.
 
         What is left of both is skipped once an arm is near the noise, where its error is smooth. The last pass is narrow.
@@ -42,6 +42,7 @@ class Schedule:
         Args:
             levels: of process noise.
             passes: at the arm's own; none where a level is all that is wanted.
+            most: error over the noise under an observer; a level that leaves more ends the calibration without a result.
         """
         own, settings = self.arm.constants["drive"]["torque_noise"], self.dataset.settings
         x = self.parameters.position(self.arm)
@@ -54,6 +55,8 @@ class Schedule:
             objective = here if here is not None and noise == own else self._objective(x, noise)
             found = objective, self._minimise(objective, x, steps, last=False)
             x, steps = self.parameters.within(found[1].x), found[1].steps
+            if most < np.inf and noise > own and self._objective(x, noise).excess_factor > most:
+                return None
         if passes:
             objective = self._objective(x, own)
             found = objective, self._minimise(objective, x, steps, last=True)
@@ -61,8 +64,9 @@ class Schedule:
         return Calibration(self.parameters.apply(self.arm, found[1].x), found[1], found[0])
 
     def _objective(self, x: Floats, torque_noise: float) -> Objective:
-        """Build an objective that weighs errors by those at x."""
-        objective = objective_at(self.arm, self.dataset, self.parameters, torque_noise)
+        """Build an objective that weighs errors by those at x; under an observer, of an arm with its slow vibrations alone."""
+        own = self.arm.constants["drive"]["torque_noise"]
+        objective = objective_at(self.arm, self.dataset, self.parameters, torque_noise, reduced=torque_noise > own)
         return objective.weighted_by(self.parameters.apply(self.arm, x))
 
     def _minimise(self, objective: Objective, x: Floats, steps: StepSizes, last: bool) -> Solution:

@@ -52,7 +52,8 @@ def detection_limits(calibrator: Calibrator, found: Calibration) -> dict[str, De
         found: the arm that is left in the end.
     """
     dataset = calibrator.dataset
-    base = baseline(found, dataset, (dataset.settings.process_noise.detection,))
+    with calibrator.workers.threads():
+        base = baseline(found, dataset, (dataset.settings.process_noise.detection,))
     begun = error_measure(found.arm).states_before(found.arm, dataset)
     without = _Windows.of(found.arm, dataset, begun)
     names = sizeable(found.arm)

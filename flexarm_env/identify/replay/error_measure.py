@@ -91,14 +91,13 @@ class ErrorMeasure(Protocol):
     def score(self, arm: Arm, dataset: Dataset, held_out: bool) -> Score:
         """Measure the errors of an arm on the held-out or the fitted part."""
 
-    def brief(self, arm: Arm, dataset: Dataset) -> float:
-        """Measure the held-out error in windows, cheaply, for arms that are nearly the same."""
-
     def states_before(self, arm: Arm, dataset: Dataset) -> list[WindowStates]:
         """Estimate the states of an arm before the held-out part of each run, from which arms that are nearly the same begin."""
 
     def brief_readings(self, arm: Arm, dataset: Dataset, begun: Sequence[WindowStates] = ()) -> list[Floats]:
-        """Compute the held-out readings (rows, signals) of each run that the brief error judges, over their deviation.
+        """Compute the held-out readings (rows, signals) of each run over their deviation, to compare arms nearly the same.
+
+        Beams are left their slow vibrations alone.
 
         Args:
             arm: the model.
@@ -130,16 +129,9 @@ class WindowErrors:
         windows, free = np.sqrt(totals / dataset.readings(held_out))
         return Score(float(windows), float(free), _by_signal(parts, dataset, held_out))
 
-    def brief(self, arm: Arm, dataset: Dataset) -> float:
-        """Measure the held-out error in windows, from states that two corrected replays estimate."""
-        total = 0.0
-        for run, windows in zip(dataset.runs, self._brief_windows(arm, dataset), strict=True):
-            total += _squares(run.errors(windows, dataset.noise)[~run.train])
-        return float(np.sqrt(total / dataset.readings(held_out=True)))
-
     def states_before(self, arm: Arm, dataset: Dataset) -> list[WindowStates]:
         """Estimate the states of an arm a window before the held-out part of each run."""
-        plants = dataset.plants(arm)
+        plants = dataset.plants(arm, reduced=True)
         observers = self._brief_observers(arm, plants, dataset)
         firsts = [int(np.argmax(~run.train)) for run in dataset.runs]
         pairs = zip(dataset.runs, firsts, strict=True)
@@ -152,7 +144,7 @@ class WindowErrors:
 
     def _brief_windows(self, arm: Arm, dataset: Dataset, begun: Sequence[WindowStates] = ()) -> Iterator[Floats]:
         """Replay the held-out part of each run in windows; rows before it are left empty."""
-        plants = dataset.plants(arm)
+        plants = dataset.plants(arm, reduced=True)
         observers = self._brief_observers(arm, plants, dataset)
         starts: Sequence[WindowStates | None] = begun or [None] * len(dataset.runs)
         for run, start in zip(dataset.runs, starts, strict=True):
@@ -182,12 +174,6 @@ class InnovationErrors:
         total = sum(_squares(errors) for errors, _ in parts)
         return Score(float(np.sqrt(total / count)), float(np.sqrt(free / count)), _by_signal(parts, dataset, held_out))
 
-    def brief(self, arm: Arm, dataset: Dataset) -> float:
-        """Measure the held-out innovations."""
-        pairs = zip(dataset.runs, self._innovations(arm, dataset), strict=True)
-        total = sum(_squares(errors[~run.train]) for run, (errors, _) in pairs)
-        return float(np.sqrt(total / dataset.readings(held_out=True)))
-
     def _innovations(self, arm: Arm, dataset: Dataset) -> Iterator[tuple[Floats, Floats]]:
         """Compute the innovations (samples, signals) of each run over their deviation, and that deviation."""
         plants, own = dataset.plants(arm), arm.constants["drive"]["torque_noise"]
@@ -206,7 +192,7 @@ class InnovationErrors:
 
     def brief_readings(self, arm: Arm, dataset: Dataset, begun: Sequence[WindowStates] = ()) -> list[Floats]:
         """Compute the predictions (rows, signals) of each run's held-out part, over the deviation of the innovations."""
-        plants, own = dataset.plants(arm), arm.constants["drive"]["torque_noise"]
+        plants, own = dataset.plants(arm, reduced=True), arm.constants["drive"]["torque_noise"]
         gains = {stated: observer_gains(arm, plant, dataset, own) for stated, plant in plants.items()}
         sigmas = {stated: innovation_sigma(plant, dataset, own) for stated, plant in plants.items()}
         predicted = [(run, replay(plants[run.stated], run, dataset, gains[run.stated])) for run in dataset.runs]

@@ -38,12 +38,46 @@ def fit_models(
     return models
 
 
+def fit_rivals(
+    calibrator: Calibrator, effects: Sequence[tuple[str, ...]], arms: Sequence[Arm], progress: Progress
+) -> list[Model]:
+    """Calibrate arms as rivals of a model that leaves only noise; those that cannot be any are left out.
+
+    Args:
+        calibrator: of the recordings.
+        effects: of each arm.
+        arms: where to start.
+        progress: of these calibrations.
+    """
+    tasks = [(fit_rival, (calibrator, names, arm)) for names, arm in zip(effects, arms, strict=True)]
+    models = []
+    for number, model in enumerate(calibrator.workers.map_in_time(tasks)):
+        models += [model] if model else []
+        progress.at((number + 1) / len(tasks), f"refitting with {' and '.join(effects[number])}")
+    return models
+
+
+def fit_rival(calibrator: Calibrator, effects: tuple[str, ...], arm: Arm, thorough: bool = False) -> Model | None:
+    """Calibrate an arm with effects as a rival of a model that leaves only noise; None where it cannot be one."""
+    found = calibrator.calibrate_rival(arm, thorough)
+    return None if found is None else _judged(calibrator, effects, found)
+
+
 def fit_model(calibrator: Calibrator, effects: tuple[str, ...], arm: Arm, thorough: bool = False) -> Model:
     """Calibrate an arm with effects; if thorough, from the nominal constants as well."""
     found = calibrator.calibrate(arm)
     if thorough:
         found = calibrator.restart_from_nominal(found)
-    return judge(effects, calibrator.settle(found), calibrator.dataset)
+    return _judged(calibrator, effects, found)
+
+
+def _judged(calibrator: Calibrator, effects: tuple[str, ...], found: Calibration) -> Model:
+    """Judge a calibration, settled on all of the data where it does not come close; one that does is polished if it is chosen."""
+    model = judge(effects, found, calibrator.dataset)
+    if model.score.windows <= calibrator.settings.errors.close:
+        return model
+    settled = calibrator.settle(found)
+    return model if settled is found else judge(effects, settled, calibrator.dataset)
 
 
 def fit_with_all_constants(
@@ -78,8 +112,13 @@ def fit_with_all_constants(
 
 
 def fit_in_place(
-    calibrator: Calibrator, without: Arm, effects: Sequence[str], progress: Progress, thorough: bool = False
-) -> list[Model]:
+    calibrator: Calibrator,
+    without: Arm,
+    effects: Sequence[str],
+    progress: Progress,
+    thorough: bool = False,
+    rivals_of_noise: bool = False,
+) -> list[Model | None]:
     """Calibrate an arm with each of some effects, started where it explains most of its residual, as long as there is time.
 
     Args:
@@ -88,12 +127,16 @@ def fit_in_place(
         effects: names.
         progress: of these calibrations.
         thorough: whether each is started from the nominal constants as well.
+        rivals_of_noise: whether each is a rival of a model that leaves only noise.
+
+    Returns:
+        A model of each of the first effects; None for one that cannot be a rival.
     """
     models = []
-    tasks = [(_fit_from_signature, (calibrator, effect, without, thorough)) for effect in effects]
+    tasks = [(_fit_from_signature, (calibrator, effect, without, thorough, rivals_of_noise)) for effect in effects]
     for model in calibrator.workers.map_in_time(tasks):
         models.append(model)
-        progress.at(len(models) / len(effects), f"refitting with {model.effects[0]} instead")
+        progress.at(len(models) / len(effects), f"refitting with {effects[len(models) - 1]} instead")
     return models
 
 
@@ -142,11 +185,12 @@ def _starts(calibrator: Calibrator, effect: str, arm: Arm, trials: Sequence[Tria
     return [dict(start) for start, _ in own] + first
 
 
-def _fit_from_signature(calibrator: Calibrator, effect: str, without: Arm, thorough: bool) -> Model:
+def _fit_from_signature(calibrator: Calibrator, effect: str, without: Arm, thorough: bool, rivals_of_noise: bool) -> Model | None:
     dataset = calibrator.dataset
     found = signatures(baseline(calibrator.uncalibrated(without), dataset), effect)
     start = found[0].start if found else first_start(without, effect, dataset)
-    return fit_model(calibrator, (effect,), without.with_effect(effect, **start), thorough)
+    fit = fit_rival if rivals_of_noise else fit_model
+    return fit(calibrator, (effect,), without.with_effect(effect, **start), thorough)
 
 
 def _share_of_companion(calibrator: Calibrator, found: Calibration) -> float:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibration import Calibration
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.progress import Progress
 from flexarm_env.identify.select.criteria import Criteria
-from flexarm_env.identify.select.fits import fit_models, fit_with_all_constants, fit_with_companion
+from flexarm_env.identify.select.fits import fit_models, fit_rivals, fit_with_all_constants, fit_with_companion
 from flexarm_env.identify.select.model import Model
 from flexarm_env.identify.select.screen import Trial, control_of, screen
+
+#: Calibrates arms with the effects that they were given.
+Fit = Callable[[Calibrator, Sequence[tuple[str, ...]], Sequence[Arm], Progress], list[Model]]
 
 
 def starts_of_search(calibrator: Calibrator, criteria: Criteria, found: Model) -> list[Calibration]:
@@ -33,11 +37,18 @@ def nearest(calibrator: Calibrator, criteria: Criteria, trials: Sequence[Trial],
     level = min(numbers.least_change * control, control - numbers.least_of_best * (control - lowest))
     near = control - numbers.near_best * (control - lowest)
     better = [t for t in trials if t.effect and t.cost < level][: numbers.finalists]
-    models: list[Model] = []
-    for part in ([t for t in better if t.cost <= near], [t for t in better if t.cost > near]):
+    best, rest = better[:1], better[1:]
+    models = _fitted(fit_models, calibrator, best, progress)
+    if any(criteria.is_sufficient(m) for m in models):
+        return models + _fitted(fit_rivals, calibrator, [t for t in rest if t.cost <= near], progress)
+    for part in ([t for t in rest if t.cost <= near], [t for t in rest if t.cost > near]):
         if not any(criteria.is_sufficient(m) for m in models):
-            models += fit_models(calibrator, [(t.effect,) for t in part], [t.arm for t in part], progress)
+            models += _fitted(fit_models, calibrator, part, progress)
     return models
+
+
+def _fitted(fit: Fit, calibrator: Calibrator, trials: Sequence[Trial], progress: Progress) -> list[Model]:
+    return fit(calibrator, [(t.effect,) for t in trials], [t.arm for t in trials], progress)
 
 
 def others(

@@ -40,7 +40,7 @@ class Screening:
     """Trials of a screening.
 
     Attributes:
-        trials: the best one of each effect, and that of none; best effect first.
+        trials: that of each effect which explains anything, and that of none; the best first, by the cost on the held-out part.
         untried: effects for which no time was left.
     """
 
@@ -50,19 +50,22 @@ class Screening:
 
 def screen(calibrator: Calibrator, starts: Sequence[Calibration], progress: Progress, briefly: bool = False) -> Screening:
     """Try every effect from some calibrations, and none, as long as there is time; briefly where only noise is left."""
-    bases = baselines(starts, calibrator.dataset)
-    names = candidates(starts[0].arm)
-    tasks = [(try_effect, (base, name, briefly)) for name in names for base in bases]
-    trials, number = [attempt(bases[0], None)], 0
+    names, number = candidates(starts[0].arm), 0
+    with calibrator.workers.threads():
+        bases = baselines(starts, calibrator.dataset)
+        trials = [attempt(bases[0], None)]
+    tasks = [(try_effect, (bases, name, briefly)) for name in names]
     for number, found in enumerate(calibrator.workers.map_in_time(tasks), start=1):
         trials += found
         progress.at(number / len(tasks), f"trying {len(names)} effects")
-    return Screening(best_trials(trials), tuple(names[number // len(bases) :]))
+    return Screening(sorted(trials, key=lambda trial: trial.held_out), tuple(names[number:]))
 
 
-def try_effect(base: Baseline, name: str, briefly: bool = False) -> list[Trial]:
-    """Fit an effect from its most promising start, if it explains anything."""
-    return [attempt(base, signature) for signature in signatures(base, name, briefly)]
+def try_effect(bases: Sequence[Baseline], name: str, briefly: bool = False) -> list[Trial]:
+    """Fit an effect from the calibration and the start from which it promises to leave least, if it explains anything."""
+    found = [(base, signature) for base in bases for signature in signatures(base, name, briefly)]
+    best = sorted(found, key=lambda pair: (1.0 - pair[1].explained) * pair[0].left_square)[:1]
+    return [attempt(base, signature) for base, signature in best]
 
 
 def attempt(base: Baseline, signature: Signature | None) -> Trial:
@@ -84,15 +87,6 @@ def attempt(base: Baseline, signature: Signature | None) -> Trial:
     best = objective.parameters.apply(arm, solution.x)
     held_out = objective.held_out_residual_of(best)
     return Trial(name, best, solution.cost, float(held_out @ held_out))
-
-
-def best_trials(trials: Sequence[Trial]) -> list[Trial]:
-    """Keep the trial of least cost of each effect, best effect first by the cost on the held-out part."""
-    best: dict[str, Trial] = {}
-    for trial in trials:
-        if trial.effect not in best or trial.cost < best[trial.effect].cost:
-            best[trial.effect] = trial
-    return sorted(best.values(), key=lambda t: t.held_out)
 
 
 def control_of(trials: Sequence[Trial]) -> Trial:

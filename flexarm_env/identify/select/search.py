@@ -210,23 +210,29 @@ class Search:
         for effect in trace.effects if len(trace.accepted) > 1 else []:
             if self.is_late:
                 return self._stop(trace, f"the model without {effect} was calibrated")
-            calibration = self.calibrator.calibrate(trace.model.arm.without_effect(effect))
-            without = judge((), calibration, self.calibrator.dataset)
+            without = self._without(trace.model, effect)
             kept = [a for a in trace.accepted if a.effect != effect]
-            if self._is_useless_beside(without, trace.model):
+            if without and self._is_useless_beside(without, trace.model):
                 trace = trace.then("drop", without, kept)
                 continue
             for place, other in enumerate(kept):
                 rest = trace.model.arm.without_effect(effect).without_effect(other.effect)
                 names = [n for n in other.equivalent[1:] if n not in trace.effects and n in candidates(rest)]
                 models = fit_in_place(self.calibrator, rest, names, Progress(), thorough=True)
-                better = [m for m in models if not m.at_bound and self._is_useless_beside(m, trace.model)]
+                better = [m for m in models if m and not m.at_bound and self._is_useless_beside(m, trace.model)]
                 if better:
                     best = min(better, key=lambda m: m.score.windows)
                     name = best.effects[0]
                     entry = Accepted(name, (name, *(m.effects[0] for m in better if m is not best)), best.score)
                     return trace.then("drop", best, placed(kept, place, entry))
         return trace
+
+    def _without(self, found: Model, effect: str) -> Model | None:
+        """Calibrate a model without one of its effects; None where that cannot leave only noise, and the model does."""
+        calibrator, arm = self.calibrator, found.arm.without_effect(effect)
+        is_near = found.score.windows <= calibrator.settings.errors.explained
+        calibration = calibrator.calibrate_rival(arm) if is_near else calibrator.calibrate(arm)
+        return None if calibration is None else judge((), calibration, calibrator.dataset)
 
     def _is_useless_beside(self, without: Model, found: Model) -> bool:
         """Whether a model without an effect is as good as one with it."""

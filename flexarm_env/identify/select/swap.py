@@ -54,9 +54,10 @@ def compare_rivals(
     smooth = shows_part_of_period(now.arm, effect, calibrator.dataset)
     every = rivals_of(effect, without) + (simpler_beyond(effect, without) if smooth else [])
     names = [name for name in every if name not in compared]
-    fitted = fit_in_place(calibrator, without, names, progress, thorough=smooth)
+    near = now.score.windows <= calibrator.settings.errors.explained
+    fitted = fit_in_place(calibrator, without, names, progress, thorough=smooth, rivals_of_noise=near)
     untried = tuple(names[len(fitted) :])
-    rivals = [m for m in fitted if not m.at_bound]
+    rivals = [m for m in fitted if m and not m.at_bound]
     if not rivals:
         return RivalComparison(effect, now, {}, frozenset([effect]), untried)
     measure = criteria.measure([now.score, *(m.score for m in rivals)])

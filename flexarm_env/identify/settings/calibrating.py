@@ -85,6 +85,11 @@ class Calibrating:
         "Step at which a constant on which the fitted part hardly depends is scanned, in its prior's standard deviations.",
         "of a rigid axis that sticks once, late, the static friction within 4 % meets the rest, and its prior is 50 % wide",
     )
+    weak: float = tuned(
+        0.5,
+        "Share of its prior by which such a constant changes the fitted part by less than the noise, along its slope.",
+        "static friction that is a step: 0 to 0.5 of the noise, the next weakest constant of those axes 1.1",
+    )
     memory: float = tuned(
         0.02,
         "Time over which the errors of a model that is far off are correlated.",
