@@ -18,6 +18,8 @@ from benchmarks.mutants.reach import PROJECT
 
 #: What the tests of a part need.
 COPIED = ("flexarm_env", "tests", "configs", "agents", "benchmarks", "docs", "pyproject.toml", "README.md")
+#: Tests are chosen by their time, so that the project's own choice of fast ones would leave out some of them.
+SLOW_TOO = ("-m", "slow or not slow")
 #: Seconds that all tests of a mutant may take. Most of it goes by in compiling.
 LONGEST = 600.0
 
@@ -48,7 +50,7 @@ def judged(mutant: Mutant, tests: Sequence[str], cache: Path) -> Outcome:
         _copy(root)
         (root / mutant.file).write_text(mutant.source(), encoding="utf-8")
         paths = {"PYTHONPATH": str(root), "FLEXARM_CACHE": str(cache), "PYTHONDONTWRITEBYTECODE": "1", "TMPDIR": folder}
-        command = [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider", *tests]
+        command = [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider", *SLOW_TOO, *tests]
         # A session of its own: what the tests have started ends with them.
         process = subprocess.Popen(
             command, cwd=root, env=os.environ | paths, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from coverage import CoverageData
 
+from benchmarks.mutants.judge import SLOW_TOO
 from benchmarks.mutants.reach import PACKAGE, PROJECT, Reach
 from flexarm_env.files import write_whole
 
@@ -43,8 +44,8 @@ def _measure(folder: Path) -> None:
     settings = folder / "settings"
     settings.write_text(f"[run]\nsource = {PACKAGE}\ndata_file = {folder / 'data'}\n")
     covered = (f"--cov={PACKAGE}", f"--cov-config={settings}", "--cov-context=test", "--cov-report=", "--cov-append")
-    _run("-m", "slow or not slow", *COMPILING)  # what compiling takes is not counted
-    _run("-m", "slow or not slow", *covered, f"--junitxml={folder / 'compiling.xml'}", *COMPILING)
+    _run(*SLOW_TOO, *COMPILING)  # what compiling takes is not counted
+    _run(*SLOW_TOO, *covered, f"--junitxml={folder / 'compiling.xml'}", *COMPILING)
     _run(*covered, f"--junitxml={folder / 'others.xml'}", *TESTS)
 
 

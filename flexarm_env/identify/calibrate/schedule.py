@@ -64,9 +64,8 @@ class Schedule:
         return Calibration(self.parameters.apply(self.arm, found[1].x), found[1], found[0])
 
     def _objective(self, x: Floats, torque_noise: float) -> Objective:
-        """Build an objective that weighs errors by those at x; under an observer, of an arm with its slow vibrations alone."""
-        own = self.arm.constants["drive"]["torque_noise"]
-        objective = objective_at(self.arm, self.dataset, self.parameters, torque_noise, reduced=torque_noise > own)
+        """Build an objective that weighs errors by those at x."""
+        objective = objective_at(self.arm, self.dataset, self.parameters, torque_noise)
         return objective.weighted_by(self.parameters.apply(self.arm, x))
 
     def _minimise(self, objective: Objective, x: Floats, steps: StepSizes, last: bool) -> Solution:
