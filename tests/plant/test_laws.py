@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from plant_arms import energy_with_gears
@@ -150,3 +151,20 @@ def test_a_recording_in_any_units_is_the_same(tmp_path_factory, time, current, a
     assert np.allclose(found.command, run.command, rtol=1e-12, atol=1e-12)
     for signal in ("arm_angle", "motor_speed"):
         assert np.allclose(found.signals[signal], run.signals[signal], rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize("order", [("dead_zone", "saturation"), ("saturation", "dead_zone")])
+def test_a_dead_zone_acts_before_a_limit_whichever_was_added_first(order: tuple[str, str]) -> None:
+    sizes = {"dead_zone": {"width": 0.2}, "saturation": {"limit": 1.0}}
+    bare = Arm.load("cu-rigid")
+    limited = bare.with_effect(order[0], **sizes[order[0]]).with_effect(order[1], **sizes[order[1]])
+    command = 2.0 * np.sin(2.0 * np.pi * 0.7 * INTERVAL * np.arange(400))
+    acting = np.clip(np.sign(command) * np.maximum(np.abs(command) - 0.2, 0.0), -1.0, 1.0)
+    np.testing.assert_array_equal(replayed(limited, command), replayed(bare, acting))
+
+
+def replayed(arm: Arm, command: np.ndarray) -> np.ndarray:
+    """Replay an arm from rest."""
+    plant = arm.plant(INTERVAL)
+    plant.place()
+    return plant.replay(command)
