@@ -128,7 +128,8 @@ class Calibrator:
             return found
         again, left = self._continue_on_all_data(found)
         if left > most:
-            again, left = self._continue_on_all_data(self._with_weak_scanned(found, self._error_on_all_data))
+            start = found if len(found.solution.jacobian) else again  # the slopes show what is weak
+            again, left = self._continue_on_all_data(self._with_weak_scanned(start, self._error_on_all_data))
         return again if left <= most else found
 
     def _continue_on_all_data(self, found: Calibration) -> tuple[Calibration, float]:
@@ -164,7 +165,7 @@ class Calibrator:
         numbers, x, apply = self.settings.calibrating, found.solution.x, found.parameters.apply
         shares = np.arange(-1.0, 1.0 + numbers.scan_step, numbers.scan_step)
         j, priors = found.solution.jacobian, found.parameters.priors
-        changes = numbers.weak * priors * np.linalg.norm(j, axis=0) / np.sqrt(max(len(j), 1))
+        changes = numbers.weak * priors * np.linalg.norm(j, axis=0) / np.sqrt(len(j))
         for along in np.diag(priors)[changes < 1.0]:
             values = [x, *(np.where(along > 0.0, share * along, x) for share in shares)]
             x = min(values, key=lambda value: error(apply(found.arm, value)))
