@@ -13,6 +13,7 @@ from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.screen import Trial, control_of
 from flexarm_env.identify.select.signatures import baseline, signatures
 from flexarm_env.identify.select.starts import candidates, first_start, sized
+from flexarm_env.identify.workers import Task
 
 #: The error of a brief calibration on the fitted part, and the calibration.
 Brief = tuple[float, Calibration]
@@ -31,11 +32,7 @@ def fit_models(
         thorough: whether each is started from the nominal constants as well.
     """
     tasks = [(fit_model, (calibrator, names, arm, thorough)) for names, arm in zip(effects, arms, strict=True)]
-    models = []
-    for model in calibrator.workers.map_in_time(tasks):
-        models.append(model)
-        progress.at(len(models) / len(tasks), f"refitting with {' and '.join(model.effects)}")
-    return models
+    return [m for m in _in_time(calibrator, tasks, [" and ".join(names) for names in effects], progress) if m]
 
 
 def fit_rivals(
@@ -50,11 +47,7 @@ def fit_rivals(
         progress: of these calibrations.
     """
     tasks = [(fit_rival, (calibrator, names, arm)) for names, arm in zip(effects, arms, strict=True)]
-    models = []
-    for number, model in enumerate(calibrator.workers.map_in_time(tasks)):
-        models += [model] if model else []
-        progress.at((number + 1) / len(tasks), f"refitting with {' and '.join(effects[number])}")
-    return models
+    return [m for m in _in_time(calibrator, tasks, [" and ".join(names) for names in effects], progress) if m]
 
 
 def fit_rival(calibrator: Calibrator, effects: tuple[str, ...], arm: Arm, thorough: bool = False) -> Model | None:
@@ -69,6 +62,15 @@ def fit_model(calibrator: Calibrator, effects: tuple[str, ...], arm: Arm, thorou
     if thorough:
         found = calibrator.restart_from_nominal(found)
     return _judged(calibrator, effects, found)
+
+
+def _in_time(calibrator: Calibrator, tasks: Sequence[Task], added: Sequence[str], progress: Progress) -> list[Model | None]:
+    """Calibrate as long as there is time, and say what was added."""
+    models = []
+    for model, what in zip(calibrator.workers.map_in_time(tasks), added, strict=False):
+        models.append(model)
+        progress.at(len(models) / len(tasks), f"refitting with {what}")
+    return models
 
 
 def _judged(calibrator: Calibrator, effects: tuple[str, ...], found: Calibration) -> Model:
@@ -132,12 +134,8 @@ def fit_in_place(
     Returns:
         A model of each of the first effects; None for one that cannot be a rival.
     """
-    models = []
     tasks = [(_fit_from_signature, (calibrator, effect, without, thorough, rivals_of_noise)) for effect in effects]
-    for model in calibrator.workers.map_in_time(tasks):
-        models.append(model)
-        progress.at(len(models) / len(effects), f"refitting with {effects[len(models) - 1]} instead")
-    return models
+    return _in_time(calibrator, tasks, [f"{effect} instead" for effect in effects], progress)
 
 
 def fit_with_companion(calibrator: Calibrator, models: Sequence[Model], progress: Progress) -> list[Model]:
