@@ -136,9 +136,9 @@ CASES = {
     "rigid_voltage": Case("rigid axis", ("constant_torque", "coulomb"), partial(machine, RIGID_VOLTAGE, ("square", "sweep"))),
     "rigid_current": Case("rigid axis", ("stribeck",), partial(machine, RIGID_CURRENT, ("square", "sweep"))),
     "flexible_tip": Case(
-        "flexible machine", ("coulomb", "viscous"), partial(machine, FLEXIBLE_TIP, ("square", "sweep", "sweep"))
+        "flexible machine", ("beam_damping", "coulomb", "viscous"), partial(machine, FLEXIBLE_TIP, ("square", "sweep", "sweep"))
     ),
     "flexible_strain": Case(
-        "flexible machine", ("cable_stiffness",), partial(machine, FLEXIBLE_STRAIN, ("square", "sweep", "sweep"))
+        "flexible machine", ("beam_damping", "cable_stiffness"), partial(machine, FLEXIBLE_STRAIN, ("square", "sweep", "sweep"))
     ),
 }
