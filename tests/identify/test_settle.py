@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from flexarm_env import Arm, Recording, diagnose, simulate
+from flexarm_env.identify.calibrate import calibrator as module
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.replay.dataset import prepare
 
@@ -53,6 +56,21 @@ def test_a_model_that_lacks_an_effect_in_the_rest_is_to_blame():
     found = calibrator.calibrate(nominal)
     assert calibrator.score(found.arm, held_out=False).windows < 1.1 < 3.0 < calibrator.score(found.arm).windows
     assert calibrator.settle(found) is found
+
+
+def test_a_final_calibration_that_ends_worse_is_not_taken_and_widens_the_intervals(recording, monkeypatch):
+    nominal, data = prepare(axis(), [recording])
+    calibrator = Calibrator(nominal, data)
+    found = calibrator.calibrate(nominal)
+    final = calibrator.calibrate_on_all_data(found)
+    away, refine = 0.3 * found.parameters.priors, module.refine
+
+    monkeypatch.setattr(module, "refine", lambda objective, x: replace(refine(objective, x), x=x + away))
+    kept = calibrator.calibrate_on_all_data(found)
+    assert calibrator.score(final.arm).windows < 1.1
+    assert kept.arm == found.arm
+    assert np.all(kept.moved > 0.9 * away)
+    assert kept.solution.residual == pytest.approx(kept.objective.residual_of(found.arm))
 
 
 def test_nothing_is_said_to_be_missing(recording):

@@ -232,7 +232,11 @@ class Calibrator:
         return self.score(other.arm).windows > self.settings.errors.converged * self.score(found.arm).windows
 
     def calibrate_on_all_data(self, found: Calibration) -> Calibration:
-        """Continue a calibration on all of the data and refine it: the final result, once no choice of model is left."""
+        """Continue a calibration on all of the data and refine it: the final result, once no choice of model is left.
+
+        Where errors are rough, as those of a gap, it may end worse than it began. Then the constants stay, and are as uncertain
+        as the two ends are apart.
+        """
         numbers, parameters = self.settings.calibrating, found.parameters
         objective = objective_at(found.arm, self.dataset.nothing_held_out(), parameters, found.objective.torque_noise)
         objective = objective.weighted_by(found.arm, narrow_priors=False)
@@ -243,7 +247,11 @@ class Calibrator:
         solution = minimise(objective.residual, x, prior, steps, self.settings.least_squares, iterations, tolerance)
         refined = refine(objective, solution.x)
         moved, at = np.hypot(solution.x - x, refined.scatter), replace(solution, x=refined.x, residual=refined.residual)
-        return Calibration(parameters.apply(found.arm, refined.x), at, objective, moved, refined.jacobian)
+        again = Calibration(parameters.apply(found.arm, refined.x), at, objective, moved, refined.jacobian)
+        if self._error_on_all_data(again.arm) <= self.settings.errors.converged * self._error_on_all_data(found.arm):
+            return again
+        stayed = replace(solution, x=x, residual=objective.residual(x))
+        return replace(again, arm=found.arm, solution=stayed, moved=np.hypot(refined.x - x, refined.scatter))
 
     def nominal_with_effects_of(self, arm: Arm) -> Arm:
         """Give the nominal arm the effects that another has beside its own."""
