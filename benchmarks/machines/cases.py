@@ -17,6 +17,7 @@ from benchmarks.machines.lacks import effects
 from benchmarks.machines.machine import record
 from benchmarks.machines.model import Model
 from benchmarks.machines.spread import drawn, spreads
+from benchmarks.machines.twins import twins
 from flexarm_env import Arm, Recording
 from flexarm_env.arm import short_name
 
@@ -107,7 +108,8 @@ class Case:
     def as_json(self) -> dict[str, Any]:
         """Convert to plain data, without model and recordings."""
         sizes = {"sizes": [s.size for s in self.hidden], "strengths": [s.strength for s in self.hidden]}
-        kinds = {"family": self.model.family, "effects": list(self.effects)}
+        alike = twins(self.machine, self.runs, self.hidden)
+        kinds = {"family": self.model.family, "effects": list(self.effects), "twins": alike}
         return self.key.as_json() | kinds | sizes | {"runs": [run.name for run in self.runs], "truth": self.truth}
 
 

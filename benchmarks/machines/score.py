@@ -14,8 +14,15 @@ from benchmarks.machines.method import FAILED
 SINGLE, ALARMS = ("one", "sensor"), ("effects", "partly", "unknown", "recordings", FAILED)
 
 
+def with_twins_named_as_hidden(answer: Answer) -> Answer:
+    """Name each hidden effect where one was found that moves the machine alike in its recordings."""
+    twins = answer["case"]["twins"]
+    return answer | {"found": answer["found"] | {"effects": [twins.get(name, name) for name in answer["found"]["effects"]]}}
+
+
 def is_honest(answer: Answer) -> bool:
     """Whether all hidden effects are named, or their exact twins, and no other; or some of them, with the verdict `partly`."""
+    answer = with_twins_named_as_hidden(answer)
     named, hidden = (merge_twins(answer[part]["effects"]) for part in ("found", "case"))
     if named == hidden:
         return True
@@ -26,7 +33,7 @@ def is_solved(answer: Answer) -> bool:
     """Whether the answer is right by the goal of its kind."""
     kind = answer["case"]["kind"]
     if kind in SINGLE:
-        return is_right_or_twin(answer)
+        return is_right_or_twin(with_twins_named_as_hidden(answer))
     if kind == "null":
         return not verdict_in(*ALARMS)(answer)
     return verdict_in("unknown", "partly")(answer) if kind == "outside" else is_honest(answer)
@@ -59,9 +66,9 @@ def figures(answers: Sequence[Answer]) -> list[Figure]:
         for name, inside in intervals(answer):
             held[name].append(inside)
     return [
-        share("right effect or its exact twin first", 0.97, of(*SINGLE), is_right_or_twin),
+        share("right effect or its exact twin first", 0.97, of(*SINGLE), is_solved),
         share("right effect first", 0.97, of(*SINGLE), is_right),
-        share("right effect or its exact twin first, sensors only", 0.97, of("sensor"), is_right_or_twin),
+        share("right effect or its exact twin first, sensors only", 0.97, of("sensor"), is_solved),
         share("two effects: both, or `partly` and none false", 0.85, of("two"), is_honest),
         share("three effects: all, or `partly` and none false", 0.8, of("three"), is_honest),
         share("outside the catalogue: `unknown` or `partly`", 0.9, of("outside"), verdict_in("unknown", "partly")),

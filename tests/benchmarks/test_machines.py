@@ -11,9 +11,9 @@ import pytest
 from benchmarks.answers.run import run
 from benchmarks.machines import table
 from benchmarks.machines.cases import KINDS, Key, case, keys
-from benchmarks.machines.catalogue import CATALOGUE
+from benchmarks.machines.catalogue import CATALOGUE, PLANT
 from benchmarks.machines.effects import Sized, draw_details
-from benchmarks.machines.experiments import runs
+from benchmarks.machines.experiments import Run, runs
 from benchmarks.machines.families import FAMILIES
 from benchmarks.machines.lacks import COUNTS, fit_together, possible
 from benchmarks.machines.machine import settings
@@ -22,7 +22,9 @@ from benchmarks.machines.outside import OUTSIDE
 from benchmarks.machines.score import figures, intervals, is_honest, is_solved
 from benchmarks.machines.spread import drawn, spreads, with_values
 from benchmarks.machines.strength import Yardstick, carried_on, find_size
+from benchmarks.machines.twins import twins
 from flexarm_env import Arm
+from tests.rig import Plan
 
 #: A place of each kind among the first cases.
 PLACES = {kind: KINDS.index(kind) for kind in COUNTS}
@@ -156,13 +158,33 @@ def test_a_model_lacks_what_is_hidden():
     assert not set(OUTSIDE) & set(Arm.load("thesis").known)
 
 
-def answer(kind, hidden, named, verdict="effects", **truth):
+@pytest.mark.parametrize("name", ["constant_torque", "asymmetric_coulomb"])
+def test_a_torque_and_uneven_friction_are_twins_unless_the_axis_rests_under_a_push(name):
+    drawn_models = (FAMILIES["rigid_current"](np.random.default_rng(seed)) for seed in range(100))
+    machine = next(model for model in drawn_models if list(model.arm.effects) == ["viscous", "coulomb"])
+    coulomb = machine.values["effects.coulomb.torque"]
+    time = np.arange(0.0, 5.0, 0.01)
+    hidden = Sized(name, PLANT[name], 0.3 * coulomb)
+
+    def found(push):
+        plan = Plan(push / machine.torque_per_command, np.zeros_like(time), (0.0, 0.0, math.inf))
+        return twins(machine, [Run("push", plan, 100.0, 1)], [hidden])
+
+    swing = 4.0 * coulomb * np.sign(np.sin(2.0 * np.pi * time))
+    below = np.where(time < 1.0, 0.0, 0.85 * coulomb)  # it turns the axis with the help of the torque alone
+    other = "asymmetric_coulomb" if name == "constant_torque" else "constant_torque"
+    assert found(swing) == {other: name}
+    assert found(below if name == "constant_torque" else -below) == {}
+
+
+def answer(kind, hidden, named, verdict="effects", twins=None, **truth):
     return {
         "case": {
             "name": "x",
             "kind": kind,
             "family": "screw",
             "effects": hidden,
+            "twins": twins or {},
             "strengths": [3.0] * len(hidden),
             "truth": truth,
         },
@@ -194,6 +216,14 @@ def answer(kind, hidden, named, verdict="effects", **truth):
 def test_two_effects_are_both_named_or_the_rest_is_admitted(hidden, named, verdict, right):
     assert is_honest(answer("two", hidden, named, verdict)) is right
     assert is_solved(answer("three", hidden, named, verdict)) is right
+
+
+def test_a_twin_in_these_recordings_is_right():
+    twins = {"constant_torque": "asymmetric_coulomb"}
+    assert is_solved(answer("one", ["asymmetric_coulomb"], ["constant_torque"], twins=twins))
+    assert not is_solved(answer("one", ["asymmetric_coulomb"], ["constant_torque"]))
+    assert is_honest(answer("two", ["asymmetric_coulomb", "payload"], ["payload", "constant_torque"], twins=twins))
+    assert not is_honest(answer("two", ["asymmetric_coulomb", "payload"], ["coulomb", "constant_torque"], twins=twins))
 
 
 @pytest.mark.parametrize(
