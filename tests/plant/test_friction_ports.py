@@ -22,8 +22,20 @@ def hub_only() -> Arm:
     return arm.with_values(shares).with_effect("presliding", compliance=COMPLIANCE)
 
 
-def test_presliding_agrees_with_an_ordinary_solver_of_dahl_s_equation(hub_only):
-    plant, structure = hub_only.plant(0.002), hub_only.structure()
+@pytest.mark.parametrize(
+    ("effects", "more", "near"),
+    [
+        ({}, lambda v: 0.0, 1e-8),
+        # where the level that friction relaxes to depends on speed, it is that at the end of a sample: an error of first order
+        ({"stribeck": {"extra": 0.15, "falloff_speed": 0.5}}, lambda v: 0.15 * math.exp(-((v / 0.5) ** 2)), 3e-4),
+        ({"viscous": {"coefficient": 0.1}, "asymmetric_viscous": {"coefficient": 0.05}}, lambda v: 0.05 * v, 3e-4),
+    ],
+)
+def test_presliding_agrees_with_an_ordinary_solver_of_dahl_s_equation(hub_only, effects, more, near):
+    arm = hub_only
+    for name, values in effects.items():
+        arm = arm.with_effect(name, **values)
+    plant, structure = arm.plant(0.002), arm.structure()
     plant.place()
     model, count = plant.model, 50
     size = len(model.names)
@@ -36,7 +48,7 @@ def test_presliding_agrees_with_an_ordinary_solver_of_dahl_s_equation(hub_only):
         q, v, friction = x[:size], x[size:-1], x[-1]
         force = model.input[:, 0] * command - damping @ v - stiffness @ q
         force[0] -= friction
-        yields = (v[0] - abs(v[0]) * friction / SLIDING) / COMPLIANCE
+        yields = (v[0] - abs(v[0]) * friction / (SLIDING + more(v[0]))) / COMPLIANCE
         return np.concatenate([v, np.linalg.solve(model.mass, force), [yields]])
 
     commands, times = (2.0, -2.0, 0.0), 0.002 * np.arange(count + 1)
@@ -48,8 +60,8 @@ def test_presliding_agrees_with_an_ordinary_solver_of_dahl_s_equation(hub_only):
     hub, speed = np.hstack(states)[[0, size + 1]]
     readings = plant.replay(np.repeat(commands, count))
     assert (np.diff(np.sign(np.diff(hub))) != 0).sum() > 5, "the hub turns round, or friction's memory is not tried"
-    assert np.abs(readings[:, 0] - hub).max() < 1e-8
-    assert np.abs(readings[:, 1] - 1.5 * speed).max() < 1e-6
+    assert np.abs(readings[:, 0] - hub).max() < near
+    assert np.abs(readings[:, 1] - 1.5 * speed).max() < 100.0 * near
 
 
 def test_a_slow_push_yields_as_dahl_s_equation_says(hub_only):
