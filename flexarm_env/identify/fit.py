@@ -16,6 +16,7 @@ from flexarm_env.identify.origin import with_origin
 from flexarm_env.identify.progress import Progress, ProgressCallback
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.error_measure import closed_loop_errors
+from flexarm_env.identify.replay.hold_out import hold_out_notes
 from flexarm_env.identify.results import Addition, Fit
 from flexarm_env.identify.select.screen import attempt
 from flexarm_env.identify.select.signatures import baselines, signatures
@@ -62,10 +63,10 @@ def fit(
             f"arm '{arm.name}' leaves nothing to fit: every constant is fixed, known exactly or 0; "
             "take names out of `fixed`, or add an effect with `flexarm add`"
         )
-    calibrator = Calibrator(nominal, dataset, Workers(jobs))
+    workers = Workers(jobs)
     say.at(0.0, "refitting the constants")
-    with calibrator.workers.threads():
-        found = calibrator.calibrate_constants()
+    with workers.threads():
+        calibrator, found = Calibrator(nominal, dataset, workers).choose_hold_out()
         before, after = calibrator.score(nominal), calibrator.score(found.arm)
         final = calibrator.calibrate_on_all_data(found)
         values = estimates(final, nominal)
@@ -77,8 +78,8 @@ def fit(
         free_run={"nominal": before.free_run, "refitted": after.free_run},
         seconds=time.perf_counter() - began,
         settings=settings,
-        closed_loop=closed_loop_errors({"nominal": nominal, "refitted": found.arm}, dataset),
-        notes=list(dataset.notes),
+        closed_loop=closed_loop_errors({"nominal": nominal, "refitted": found.arm}, calibrator.dataset),
+        notes=[*dataset.notes, *hold_out_notes(calibrator.dataset)],
     )
 
 
@@ -142,7 +143,7 @@ def add(
         seconds=time.perf_counter() - began,
         settings=settings,
         closed_loop=closed_loop_errors(dict(zip(names, arms, strict=True)), calibrator.dataset),
-        notes=list(dataset.notes),
+        notes=[*dataset.notes, *hold_out_notes(calibrator.dataset)],
     )
 
 

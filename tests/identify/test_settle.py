@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexarm_env import Arm, Recording, diagnose, simulate
+from flexarm_env import Arm, Recording, diagnose, fit, simulate
 from flexarm_env.identify.calibrate import calibrator as module
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.replay.dataset import prepare
@@ -75,6 +75,12 @@ def test_a_final_calibration_that_ends_worse_is_not_taken_and_widens_the_interva
 
 def test_nothing_is_said_to_be_missing(recording):
     assert diagnose(axis(0.7 * STICTION), [recording], jobs=1).verdict in ("parameters", "nothing_missing")
+
+
+def test_a_fit_of_constants_alone_settles_them_too(recording):
+    found = fit(axis(0.7 * STICTION), [recording], jobs=1)
+    assert found.error["refitted"] < 1.1
+    assert found.arm.value("effects.stiction.extra") > HELD - COULOMB
 
 
 @pytest.mark.parametrize("seed", [4, 24])
