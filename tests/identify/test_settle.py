@@ -58,7 +58,7 @@ def test_a_model_that_lacks_an_effect_in_the_rest_is_to_blame():
     assert calibrator.settle(found) is found
 
 
-def test_a_final_calibration_that_ends_worse_is_not_taken_and_widens_the_intervals(recording, monkeypatch):
+def test_a_final_calibration_that_loses_the_explanation_is_not_taken_and_widens_the_intervals(recording, monkeypatch):
     nominal, data = prepare(axis(), [recording])
     calibrator = Calibrator(nominal, data)
     found = calibrator.calibrate(nominal)
