@@ -14,7 +14,7 @@ from flexarm_env.identify.calibrate.least_squares import minimise
 from flexarm_env.identify.calibrate.objective import Objective, Weights
 from flexarm_env.identify.calibrate.parameters import FitParameters, effect_parameters
 from flexarm_env.identify.progress import Progress
-from flexarm_env.identify.select.signatures import Baseline, Signature, baselines, signatures
+from flexarm_env.identify.select.signatures import Baseline, Signature, baselines, promising
 from flexarm_env.identify.select.starts import candidates
 
 
@@ -63,9 +63,7 @@ def screen(calibrator: Calibrator, starts: Sequence[Calibration], progress: Prog
 
 def try_effect(bases: Sequence[Baseline], name: str, briefly: bool = False) -> list[Trial]:
     """Fit an effect from the calibration and the start from which it promises to leave least, if it explains anything."""
-    found = [(base, signature) for base in bases for signature in signatures(base, name, briefly)]
-    best = sorted(found, key=lambda pair: (1.0 - pair[1].explained) * pair[0].left_square)[:1]
-    return [attempt(base, signature) for base, signature in best]
+    return [attempt(base, signature) for base, signature in promising(bases, name, briefly)]
 
 
 def attempt(base: Baseline, signature: Signature | None) -> Trial:

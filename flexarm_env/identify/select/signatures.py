@@ -133,29 +133,49 @@ def baseline_of(objective: Objective, steps: Floats) -> Baseline:
 def signatures(base: Baseline, effect: str, briefly: bool = False) -> list[Signature]:
     """Find the most promising start of an effect, if it explains anything of the residual.
 
-    The effect's own starts are ranked by a finite secant. The best are tried at the size that it gives.
-
     Args:
         base: the arm without the effect.
         effect: its name.
         briefly: whether the secants' promises stand untried, as where only noise is left.
     """
-    numbers, left = base.numbers, base.left
+    return [found for _, found in promising([base], effect, briefly)]
+
+
+def promising(bases: Sequence[Baseline], effect: str, briefly: bool = False) -> list[tuple[Baseline, Signature]]:
+    """Find the baseline and the start of an effect from which it promises to leave least, if it explains anything there.
+
+    The effect's own starts are ranked by a finite secant. The best are tried at the size that it gives.
+
+    Args:
+        bases: the arm without the effect, with other constants each.
+        effect: its name.
+        briefly: whether the secants' promises stand untried, as where only noise is left.
+    """
+    numbers = bases[0].numbers
+
+    def left(pair: tuple[Baseline, Signature]) -> float:
+        return (1.0 - pair[1].explained) * pair[0].left_square
+
+    pairs = sorted([(base, secant) for base in bases for secant in _secants(base, effect)], key=left)
+    if not briefly:
+        pairs = [(base, _at_its_size(base, secant)) for base, secant in pairs[: numbers.starts_scanned]]
+    best = min(pairs, key=left)
+    return [best] if best[1].explained > numbers.least_explained else []
+
+
+def _secants(base: Baseline, effect: str) -> list[Signature]:
+    """Extrapolate what an effect explains from each of its starts."""
+    left = base.left
     size = math.sqrt(base.left_square)
 
     def change_by(values: dict[str, float]) -> Floats:
         return base.unexplained(base.change(effect, values))
 
     starts = starts_of(base.arm, effect, base.objective.dataset)
-    tried = (changes_in_proportion(base.arm, effect, start, change_by, size, numbers) for start in starts)
+    tried = (changes_in_proportion(base.arm, effect, start, change_by, size, base.numbers) for start in starts)
     changes = [change for of_start in tried for change in of_start]
-    secants = [_secant(base, effect, start, change, left) for start, change in changes]
-    secants += _with_phases_between(base, effect, changes, left)
-    secants.sort(key=lambda s: -s.explained)
-    if not briefly:
-        secants = [_at_its_size(base, secant) for secant in secants[: numbers.starts_scanned]]
-    best = max(secants, key=lambda s: s.explained)
-    return [best] if best.explained > numbers.least_explained else []
+    found = [_secant(base, effect, start, change, left) for start, change in changes]
+    return found + _with_phases_between(base, effect, changes, left)
 
 
 def _with_phases_between(base: Baseline, effect: str, changes: Sequence[Change], left: Floats) -> list[Signature]:
@@ -197,7 +217,8 @@ def _secant(base: Baseline, effect: str, start: dict[str, float], change: Floats
 def _at_its_size(base: Baseline, secant: Signature) -> Signature:
     """Evaluate an effect at the size that its secant gives, or, where that does not hold, at the best of a scan.
 
-    The error of a gap or a delay has a narrow valley that no slope shows from outside.
+    The error of a gap or a delay has a narrow valley that no slope shows from outside. A secant that promises nothing worth a fit
+    is taken at its word: starts are tried until their change is in proportion to the errors, so that a valley would show.
     """
     numbers, factors = base.numbers, _factors(base, secant)
     if factors == (1.0,) or secant.explained == 0.0:
@@ -208,7 +229,9 @@ def _at_its_size(base: Baseline, secant: Signature) -> Signature:
         found.append(_at_size(base, secant, float(np.clip(secant.factor, -largest, largest))))
         if found[-1].explained > numbers.linear * secant.explained:
             return found[-1]
-    return max(found + [_at_size(base, secant, factor) for factor in factors], key=lambda s: s.explained)
+    if secant.explained > numbers.least_explained:
+        found += [_at_size(base, secant, factor) for factor in factors]
+    return max(found, key=lambda s: s.explained)
 
 
 def _unscaled(secant: Signature) -> Signature:
