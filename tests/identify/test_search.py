@@ -22,6 +22,7 @@ from flexarm_env.identify.select.search import Search, exchange
 from flexarm_env.identify.select.starts import rivals_of
 from flexarm_env.identify.select.swap import RivalComparison
 from flexarm_env.identify.select.trace import Accepted, Trace, Tried
+from flexarm_env.identify.settings import SETTINGS
 from flexarm_env.recordings.recording import Recording
 
 TRUE = {
@@ -158,3 +159,39 @@ def test_what_no_catalogue_holds_is_not_explained_one_by_one():
     found = search.combine(trace, Progress())
     assert found.effects == []
     assert found.model == trace.model
+
+
+PAIR = ("tach_filter", "cable_stiffness")
+
+
+def far_off() -> Search:
+    """A search for what an arm lacks that is far off, with no recordings behind it."""
+    workers = SimpleNamespace(deadline=SimpleNamespace(is_over=False), map_in_time=lambda tasks: [])
+    calibrator = SimpleNamespace(settings=SETTINGS, workers=workers)
+    return Search(calibrator, ThresholdCriteria(Score(28.0, 480.0), Score(26.0, 480.0), True, SETTINGS))
+
+
+def scored(score: Score, *effects: str) -> Model:
+    return replace(model(*effects), score=score)
+
+
+@pytest.mark.parametrize(("windows", "kept"), [(28.0, PAIR), (5.4, PAIR[1:])])
+def test_an_effect_is_useless_only_where_windows_do_not_need_it_either(monkeypatch, windows, kept):
+    """Where a model is far off, its free run is chaotic and may end nearer without an effect that it has."""
+    without = {"tach_filter": scored(Score(windows, 82.0), PAIR[1])}
+    monkeypatch.setattr(Search, "_without", lambda self, found, effect: without.get(effect))
+    trace = accept(Trace.begin(model()), scored(Score(5.4, 205.0), *PAIR), *PAIR)
+    assert tuple(far_off().drop_useless(trace).effects) == kept
+
+
+@pytest.mark.parametrize(("left", "found"), [(5.4, PAIR), (1.0, PAIR[:1])])
+def test_an_effect_is_added_beside_what_forecasts_ask_for_unless_that_explains_all(monkeypatch, left, found):
+    def add(self: Search, trace: Trace, progress: Progress) -> Trace:
+        return accept(trace, scored(Score(1.0, 1.0), *PAIR), *PAIR) if trace.effects == [PAIR[0]] else trace
+
+    asked = scored(Score(left, left), PAIR[0])
+    monkeypatch.setattr(Search, "add", add)
+    monkeypatch.setattr(Search, "swap", lambda self, trace, progress, untried=False: trace)
+    monkeypatch.setattr(Search, "drop_useless", lambda self, trace: trace)
+    monkeypatch.setattr(Search, "ask_forecasts", lambda self, trace, progress: accept(trace, asked, PAIR[0]))
+    assert tuple(far_off().run(scored(Score(26.0, 480.0)), Progress()).effects) == found

@@ -44,25 +44,37 @@ class Search:
         return trace.stopped_before(left_out, self.calibrator.workers.deadline)
 
     def run(self, base: Model, progress: Progress) -> Trace:
-        """Search from the calibrated constants: add the best effect, calibrate, again, until nothing is left or nothing helps."""
-        most = self.calibrator.settings.selecting.most_effects
-        *rounds, swapping, forecasting = progress.split(*([5, 2] * most), 2, 4)
-        trace = Trace.begin(base)
+        """Search from the calibrated constants: add the best effect, calibrate, again, until nothing is left or nothing helps.
+
+        Where more than noise is left, forecasts are asked for another model, and the best effect beside that is added.
+        """
+        stepwise, forecasting, beside_forecast = progress.split(23, 4, 4)
+        trace = self._forward(Trace.begin(base), stepwise)
+        explained = self.criteria.is_fully_explained(trace.model)
+        leaves_nothing = explained and trace.model.score.windows < self.calibrator.settings.errors.nothing_left
+        if leaves_nothing or base.score.windows <= self.calibrator.settings.errors.explained:
+            return trace
+        asked = self.ask_forecasts(trace, forecasting)
+        if asked.model is trace.model or self.criteria.is_fully_explained(asked.model):
+            return asked
+        return self._forward(asked, beside_forecast)
+
+    def _forward(self, trace: Trace, progress: Progress) -> Trace:
+        """Add the best effect, exchange those that another fits better, again, and drop what later ones made useless."""
+        most, fewest = self.calibrator.settings.selecting.most_effects, len(trace.accepted)
+        *rounds, swapping = progress.split(*([5, 2] * most), 2)
         for adding, exchanging in zip(rounds[::2], rounds[1::2], strict=True):
+            if len(trace.accepted) >= most:
+                break
             longer = self.add(trace, adding)
             added, trace = len(longer.accepted) > len(trace.accepted), longer
             if added and len(trace.accepted) > 1:  # an effect in the wrong place calls for one more
                 trace = self.swap(trace, exchanging, untried=trace.steps[-1].action == "combine")
-            if not added or len(trace.accepted) >= most:
+            if not added:
                 break
-        if len(trace.accepted) == 1:
+        if len(trace.accepted) == 1 > fewest:
             trace = self.swap(trace, swapping)
-        trace = self.drop_useless(trace)
-        errors, explained = self.calibrator.settings.errors, self.criteria.is_fully_explained(trace.model)
-        leaves_nothing = explained and trace.model.score.windows < errors.nothing_left
-        if leaves_nothing or base.score.windows <= errors.explained:
-            return trace
-        return self.ask_forecasts(trace, forecasting)
+        return self.drop_useless(trace) if len(trace.accepted) > fewest else trace
 
     def add(self, trace: Trace, progress: Progress) -> Trace:
         """Add the effect that removes most, if it is worthwhile; record all that were tried."""
@@ -235,8 +247,9 @@ class Search:
         return None if calibration is None else judge((), calibration, calibrator.dataset)
 
     def _is_useless_beside(self, without: Model, found: Model) -> bool:
-        """Whether a model without an effect is as good as one with it."""
-        return not self.criteria.is_worthwhile(without, found, self.criteria.measure([without.score, found.score]))
+        """Whether a model without an effect is as good as one with it, in windows too where whole runs are what counts."""
+        measures: tuple[Measure, ...] = (self.criteria.measure([without.score, found.score]), lambda s: s.excess)
+        return not any(self.criteria.is_worthwhile(without, found, measure) for measure in measures)
 
     def _combine_at_once(self, trace: Trace, models: Sequence[Model], progress: Progress) -> Trace:
         """Accept the first effect and more beside it where none comes near alone, but some explain the data together."""
