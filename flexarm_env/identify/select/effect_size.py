@@ -11,7 +11,7 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.objective import ObserverBank
 from flexarm_env.identify.select.signatures import Baseline
-from flexarm_env.identify.select.starts import candidates, sized, starts_of
+from flexarm_env.identify.select.starts import candidates, sized, some_starts_of
 from flexarm_env.identify.settings import DetectionLimits
 
 #: Rise of the squared error over noise in windows that an arm with one effect more makes: the part that grows with the effect's
@@ -123,9 +123,8 @@ def smallest_detectable(base: Baseline, name: str, rise_of: Rise) -> EffectSize 
     """
     dataset = base.objective.dataset
     numbers, least = dataset.settings.detection, dataset.settings.selecting.least_removed
-    starts = starts_of(base.arm, name, dataset)
-    some = starts[:: -(-len(starts) // numbers.most_starts)]
-    tried = [_by_innovations(EffectSize(base, name, start), least / numbers.in_windows) for start in some]
+    starts = some_starts_of(base.arm, name, dataset)
+    tried = [_by_innovations(EffectSize(base, name, start), least / numbers.in_windows) for start in starts]
     size, share = max(tried, key=lambda pair: pair[0].multiple)
     found = _by_windows(size, least, share, rise_of)
     if found is None:

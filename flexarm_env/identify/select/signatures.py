@@ -16,7 +16,7 @@ from flexarm_env.identify.calibrate.least_squares import jacobian
 from flexarm_env.identify.calibrate.objective import Objective, ObserverBank, objective_at
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.scales import torque_scale
-from flexarm_env.identify.select.starts import Change, changes_in_proportion, sized, starts_of
+from flexarm_env.identify.select.starts import Change, changes_in_proportion, sized, some_starts_of, starts_of
 from flexarm_env.identify.settings import Screening
 
 Floats = NDArray[np.float64]
@@ -130,15 +130,9 @@ def baseline_of(objective: Objective, steps: Floats) -> Baseline:
     return Baseline(objective, x, residual, slopes, orthonormal)
 
 
-def signatures(base: Baseline, effect: str, briefly: bool = False) -> list[Signature]:
-    """Find the most promising start of an effect, if it explains anything of the residual.
-
-    Args:
-        base: the arm without the effect.
-        effect: its name.
-        briefly: whether the secants' promises stand untried, as where only noise is left.
-    """
-    return [found for _, found in promising([base], effect, briefly)]
+def signatures(base: Baseline, effect: str) -> list[Signature]:
+    """Find the most promising start of an effect, if it explains anything of the residual of an arm without it."""
+    return [found for _, found in promising([base], effect)]
 
 
 def promising(bases: Sequence[Baseline], effect: str, briefly: bool = False) -> list[tuple[Baseline, Signature]]:
@@ -149,29 +143,29 @@ def promising(bases: Sequence[Baseline], effect: str, briefly: bool = False) -> 
     Args:
         bases: the arm without the effect, with other constants each.
         effect: its name.
-        briefly: whether the secants' promises stand untried, as where only noise is left.
+        briefly: whether few starts are tried, and their secants' promises stand untried, as where only noise is left.
     """
     numbers = bases[0].numbers
 
     def left(pair: tuple[Baseline, Signature]) -> float:
         return (1.0 - pair[1].explained) * pair[0].left_square
 
-    pairs = sorted([(base, secant) for base in bases for secant in _secants(base, effect)], key=left)
+    pairs = sorted([(base, secant) for base in bases for secant in _secants(base, effect, briefly)], key=left)
     if not briefly:
         pairs = [(base, _at_its_size(base, secant)) for base, secant in pairs[: numbers.starts_scanned]]
     best = min(pairs, key=left)
     return [best] if best[1].explained > numbers.least_explained else []
 
 
-def _secants(base: Baseline, effect: str) -> list[Signature]:
-    """Extrapolate what an effect explains from each of its starts."""
-    left = base.left
+def _secants(base: Baseline, effect: str, briefly: bool) -> list[Signature]:
+    """Extrapolate what an effect explains from each of its starts; of few, briefly."""
+    left, find = base.left, some_starts_of if briefly else starts_of
     size = math.sqrt(base.left_square)
 
     def change_by(values: dict[str, float]) -> Floats:
         return base.unexplained(base.change(effect, values))
 
-    starts = starts_of(base.arm, effect, base.objective.dataset)
+    starts = find(base.arm, effect, base.objective.dataset)
     tried = (changes_in_proportion(base.arm, effect, start, change_by, size, base.numbers) for start in starts)
     changes = [change for of_start in tried for change in of_start]
     found = [_secant(base, effect, start, change, left) for start, change in changes]

@@ -64,6 +64,12 @@ def starts_of(arm: Arm, effect: str, dataset: Dataset) -> list[dict[str, float]]
     return [_scaled(arm, effect, start, dataset) for start in known.starts()]
 
 
+def some_starts_of(arm: Arm, effect: str, dataset: Dataset) -> list[dict[str, float]]:
+    """List few of these, where no more than noise is left to tell them apart: of a periodic effect, slow to fast."""
+    starts = starts_of(arm, effect, dataset)
+    return starts[:: -(-len(starts) // dataset.settings.detection.most_starts)]
+
+
 def first_start(arm: Arm, effect: str, dataset: Dataset) -> dict[str, float]:
     """Choose the values from which an effect is tried first."""
     return _scaled(arm, effect, arm.known[effect].starts()[0], dataset)
