@@ -107,10 +107,22 @@ def refine(objective: Objective, x: Floats) -> Refined:
         starts = (best.found.x - aside, best.found.x + aside)
         ends += [_descend(objective, start, process_noise.refinement_aside)[-1] for start in starts]
     minima = [end.found for end in ends if end.level is objective]
-    found = min(minima, key=lambda end: end.cost)
-    x, _ = best_scale(objective, found.x, powers)
-    found = found if np.array_equal(x, found.x) else _at(objective, x, found.jacobian)
+    found = _along_scale(objective, min(minima, key=lambda end: end.cost), powers)
     return replace(found, scatter=np.std([end.x for end in minima], axis=0))
+
+
+def _along_scale(objective: Objective, found: Refined, powers: NDArray[np.int_]) -> Refined:
+    """Move to the best common scale; where that gains more than two ends of one fit differ by, take more steps, in turn."""
+
+    def at_best_scale(here: Refined) -> Refined:
+        x, _ = best_scale(objective, here.x, powers)
+        return here if np.array_equal(x, here.x) else _at(objective, x, here.jacobian)
+
+    least = objective.dataset.settings.errors.converged**2
+    ahead = at_best_scale(found)
+    while found.cost > least * ahead.cost:
+        found, ahead = ahead, at_best_scale(_descend(objective, ahead.x, ())[-1].found)
+    return ahead
 
 
 def _at(objective: Objective, x: Floats, near: Floats | None) -> Refined:
