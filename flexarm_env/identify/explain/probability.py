@@ -21,7 +21,7 @@ def probabilities(equivalent: Sequence[Sequence[str]], left: float, numbers: Pro
     Example:
         >>> alone, equals = probabilities([["coulomb"], ["cogging", "position_friction"]], 0.0, Probabilities())
         >>> alone, [round(one, 2) for one in equals]
-        ([0.95], [0.83, 0.12])
+        ([0.98], [0.9, 0.08])
     """
     every = numbers.explained if left == 0.0 else numbers.mostly if left < numbers.little else numbers.partly
     return [_shared(every, len(names), numbers.first) for names in equivalent]
