@@ -111,7 +111,7 @@ def refine(objective: Objective, x: Floats) -> Refined:
     return replace(found, scatter=np.std([end.x for end in minima], axis=0))
 
 
-def _along_scale(objective: Objective, found: Refined, powers: NDArray[np.int_]) -> Refined:
+def _along_scale(objective: Objective, found: Refined, powers: NDArray[np.int64]) -> Refined:
     """Move to the best common scale; where that gains more than two ends of one fit differ by, take more steps, in turn."""
 
     def at_best_scale(here: Refined) -> Refined:

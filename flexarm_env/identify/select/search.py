@@ -46,7 +46,7 @@ class Search:
     def run(self, base: Model, progress: Progress) -> Trace:
         """Search from the calibrated constants: add the best effect, calibrate, again, until nothing is left or nothing helps.
 
-        Where more than noise is left, forecasts are asked for another model, and the best effect beside that is added.
+        Where more than noise is left, forecasts are asked for another model, and the search goes on beside that.
         """
         stepwise, forecasting, beside_forecast = progress.split(23, 4, 4)
         trace = self._forward(Trace.begin(base), stepwise)

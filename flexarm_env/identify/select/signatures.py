@@ -147,13 +147,13 @@ def promising(bases: Sequence[Baseline], effect: str, briefly: bool = False) -> 
     """
     numbers = bases[0].numbers
 
-    def left(pair: tuple[Baseline, Signature]) -> float:
+    def rest(pair: tuple[Baseline, Signature]) -> float:
         return (1.0 - pair[1].explained) * pair[0].left_square
 
-    pairs = sorted([(base, secant) for base in bases for secant in _secants(base, effect, briefly)], key=left)
+    pairs = sorted([(base, secant) for base in bases for secant in _secants(base, effect, briefly)], key=rest)
     if not briefly:
         pairs = [(base, _at_its_size(base, secant)) for base, secant in pairs[: numbers.starts_scanned]]
-    best = min(pairs, key=left)
+    best = min(pairs, key=rest)
     return [best] if best[1].explained > numbers.least_explained else []
 
 
