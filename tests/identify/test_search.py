@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -20,7 +21,7 @@ from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.screen import Trial
 from flexarm_env.identify.select.search import Search, exchange
 from flexarm_env.identify.select.starts import rivals_of
-from flexarm_env.identify.select.swap import RivalComparison
+from flexarm_env.identify.select.swap import RivalComparison, compare_rivals
 from flexarm_env.identify.select.trace import Accepted, Trace, Tried
 from flexarm_env.identify.settings import SETTINGS
 from flexarm_env.recordings.recording import Recording
@@ -108,7 +109,8 @@ def test_rivals_that_lost_are_equivalent_no_more():
     before = two_accepted()
     tried = frozenset(["cable_stiffness", "base_tilt", "constant_torque"])
     trace = exchange(before, 0, RivalComparison("cable_stiffness", before.model, {}, tried))
-    assert trace.accepted[0] == Accepted("cable_stiffness", ("cable_stiffness", "air_drag"), Score(3.0, 3.0))
+    left = Accepted("cable_stiffness", ("cable_stiffness", "air_drag"), Score(3.0, 3.0), frozenset(["tach_filter"]))
+    assert trace.accepted[0] == left
     assert trace.model == before.model
 
 
@@ -162,12 +164,13 @@ def test_what_no_catalogue_holds_is_not_explained_one_by_one():
 
 
 PAIR = ("tach_filter", "cable_stiffness")
+OTHERS = ("time_offset", "base_tilt")
 
 
 def far_off() -> Search:
     """A search for what an arm lacks that is far off, with no recordings behind it."""
     workers = SimpleNamespace(deadline=SimpleNamespace(is_over=False), map_in_time=lambda tasks: [])
-    calibrator = SimpleNamespace(settings=SETTINGS, workers=workers)
+    calibrator = SimpleNamespace(settings=SETTINGS, workers=workers, dataset=SimpleNamespace(signals=()))
     return Search(calibrator, ThresholdCriteria(Score(28.0, 480.0), Score(26.0, 480.0), True, SETTINGS))
 
 
@@ -195,3 +198,66 @@ def test_an_effect_is_added_beside_what_forecasts_ask_for_unless_that_explains_a
     monkeypatch.setattr(Search, "drop_useless", lambda self, trace: trace)
     monkeypatch.setattr(Search, "ask_forecasts", lambda self, trace, progress: accept(trace, asked, PAIR[0]))
     assert tuple(far_off().run(scored(Score(26.0, 480.0)), Progress()).effects) == found
+
+
+def in_another_place(name: str) -> Callable[[Search, Trace, int, Progress], Trace]:
+    """A comparison in which no effect gives way but the last one, once."""
+
+    def compare(self: Search, trace: Trace, place: int, progress: Progress) -> Trace:
+        names = [name if place == 1 and n == PAIR[1] and at == 1 else n for at, n in enumerate(trace.effects)]
+        compared.append(trace.effects[place])
+        return accept(trace, scored(Score(1.5, 1.5), *names), *names)
+
+    compared: list[str] = []
+    compare.compared = compared
+    return compare
+
+
+def test_when_one_effect_has_given_way_the_others_are_compared_anew(monkeypatch):
+    compare = in_another_place("base_tilt")
+    monkeypatch.setattr(Search, "_compare", compare)
+    trace = accept(Trace.begin(model()), scored(Score(2.0, 2.0), *PAIR), *PAIR)
+    assert far_off().swap(trace, Progress()).effects == [PAIR[0], "base_tilt"]
+    assert compare.compared == [*PAIR, PAIR[0]]
+
+
+def test_effects_that_give_way_to_each_other_are_compared_until_one_pair_comes_again(monkeypatch):
+    turns = dict(zip((*PAIR, *OTHERS), (*OTHERS, *PAIR), strict=True))
+
+    def compare(self: Search, trace: Trace, place: int, progress: Progress) -> Trace:
+        names = [turns[n] if at == place else n for at, n in enumerate(trace.effects)]
+        return accept(trace, scored(Score(2.0, 2.0)), *names)
+
+    monkeypatch.setattr(Search, "_compare", compare)
+    found = far_off().swap(accept(Trace.begin(model()), scored(Score(2.0, 2.0)), *PAIR), Progress())
+    assert found.effects == list(PAIR)
+
+
+@pytest.mark.parametrize(("beside", "compared"), [("coulomb", ["cable_stiffness"]), ("tach_filter", [])])
+def test_equivalents_that_were_found_beside_another_effect_are_compared_anew_at_the_noise(monkeypatch, beside, compared):
+    def compare(self: Search, trace: Trace, place: int, progress: Progress) -> Trace:
+        seen.append(trace.effects[place])
+        return trace
+
+    seen: list[str] = []
+    monkeypatch.setattr(Search, "_compare", compare)
+    error = Score(1.0, 1.0)
+    equivalent = Accepted("cable_stiffness", ("cable_stiffness", "base_tilt"), error, frozenset([beside]))
+    accepted = [equivalent, Accepted("tach_filter", ("tach_filter",), error)]
+    trace = Trace.begin(model()).then("accept", scored(error, "cable_stiffness", "tach_filter"), accepted)
+    far_off().swap(trace, Progress())
+    assert seen == compared
+
+
+def test_an_equivalent_that_cannot_be_a_rival_at_the_noise_is_none_any_more(monkeypatch):
+    monkeypatch.setattr("flexarm_env.identify.select.swap.fit_in_place", lambda *a, **b: [None] * len(a[2]))
+    search, now = far_off(), scored(Score(1.0, 1.0), "cable_stiffness", "tach_filter")
+    accepted = Accepted("cable_stiffness", ("cable_stiffness", "air_drag"), now.score)
+    compared = compare_rivals(search.calibrator, search.criteria, accepted, now, Progress())
+    assert "air_drag" in compared.tried
+    assert not compared.alike
+
+
+@pytest.mark.parametrize(("left", "compares"), [(Score(8.9, 19.0), True), (Score(20.0, 200.0), False), (Score(2.9, 300.0), True)])
+def test_rivals_are_compared_far_off_only_where_most_is_explained(left, compares):
+    assert far_off().criteria.can_compare_rivals(scored(left)) == compares

@@ -183,8 +183,8 @@ class ThresholdCriteria:
         return (lambda model: model.bic(dataset)) if near else (lambda model: measure(model.score))
 
     def can_compare_rivals(self, found: Model) -> bool:
-        """Whether the model is not far off: where so much is missing, no rival can be told from another."""
-        return found.score.windows <= self.settings.errors.far_off
+        """Whether the model is not far off, or removes most of what was: else no rival can be told from another."""
+        return found.score.windows <= self.settings.errors.far_off or self.explains_most(found.score)
 
     def leaves_room(self, found: Model) -> bool:
         """Whether held-out or fitted errors are above the noise."""

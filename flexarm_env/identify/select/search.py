@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -20,7 +20,7 @@ from flexarm_env.identify.select.screen import Trial, control_of, screen
 from flexarm_env.identify.select.starts import candidates, shows_part_of_period
 from flexarm_env.identify.select.stepwise import extend_chain
 from flexarm_env.identify.select.swap import RivalComparison, compare_rivals
-from flexarm_env.identify.select.trace import Accepted, Trace, Tried, beside, gains, placed, share, with_last_score
+from flexarm_env.identify.select.trace import Accepted, Trace, Tried, beside, gains, others_of, placed, share, with_last_score
 
 
 @dataclass(frozen=True)
@@ -177,21 +177,25 @@ class Search:
         """Give an effect's place to one that it is confused with, where that fits better beside everything else.
 
         An effect that came in first was compared with its rivals while others were missing still, and a companion with none. One
-        that a simpler effect equals may fit better only because the simpler one's calibration ended early.
+        that a simpler effect equals may fit better only because the simpler one's calibration ended early. Each is compared anew
+        when one beside it has given way, and so is one whose equivalents were found beside others.
 
         Args:
             trace: so far.
             progress: of this stage.
             untried: whether no effect was compared with any, so that each is, though hardly more than noise is left.
         """
-        for place, effect in enumerate(trace.effects):
-            if not self.criteria.can_compare_rivals(trace.model):
+        compared: dict[str, frozenset[str]] = {}
+        seen: set[frozenset[str]] = set()
+        while (place := self._next_place(trace, compared, untried)) is not None and frozenset(trace.effects) not in seen:
+            if self.is_late:
+                trace = self._stop(trace, f"{trace.effects[place]} was compared with its rivals")
                 break
-            if untried or self._may_be_another(trace, place) or self.criteria.leaves_room(trace.model):
-                if self.is_late:
-                    trace = self._stop(trace, f"{effect} was compared with its rivals")
-                    break
-                trace = self._compare(trace, place, progress)
+            before = frozenset(trace.effects)
+            trace = self._compare(trace, place, progress)
+            compared[trace.effects[place]] = others_of(trace.effects, place)
+            if frozenset(trace.effects) != before:
+                seen.add(before)
         names = trace.effects
         kept = [
             replace(a, equivalent=tuple(n for n in a.equivalent if n == a.equivalent[0] or n not in names))
@@ -202,13 +206,25 @@ class Search:
     def _compare(self, trace: Trace, place: int, progress: Progress, compared: frozenset[str] = frozenset()) -> Trace:
         """Compare an accepted effect with its rivals, and what takes its place with those of its own that are new."""
         effect = trace.effects[place]
-        comparison = compare_rivals(self.calibrator, self.criteria, effect, trace.model, progress, compared)
+        comparison = compare_rivals(self.calibrator, self.criteria, trace.accepted[place], trace.model, progress, compared)
         trace = exchange(trace, place, comparison)
         if comparison.untried:
             return self._stop(trace, f"{effect} was compared with {', '.join(comparison.untried)}")
         if comparison.effect == effect or self.is_late:
             return trace
         return self._compare(trace, place, progress, compared | comparison.tried)
+
+    def _next_place(self, trace: Trace, compared: Mapping[str, frozenset[str]], untried: bool) -> int | None:
+        """Find the first effect that was not compared yet beside the others as they are now, and may give way to a rival."""
+        if not self.criteria.can_compare_rivals(trace.model):
+            return None
+        every = untried or self.criteria.leaves_room(trace.model)
+        for place, (effect, accepted) in enumerate(zip(trace.effects, trace.accepted, strict=True)):
+            others = others_of(trace.effects, place)
+            is_outdated = len(accepted.equivalent) > 1 and accepted.beside != others
+            if compared.get(effect) != others and (every or is_outdated or self._may_be_another(trace, place)):
+                return place
+        return None
 
     def _may_be_another(self, trace: Trace, place: int) -> bool:
         """Whether an accepted effect may stand for a simpler one, or for one that was not compared with it."""
@@ -235,7 +251,8 @@ class Search:
                 if better:
                     best = min(better, key=lambda m: m.score.windows)
                     name = best.effects[0]
-                    entry = Accepted(name, (name, *(m.effects[0] for m in better if m is not best)), best.score)
+                    names = [name, *(m.effects[0] for m in better if m is not best)]
+                    entry = Accepted(name, tuple(names), best.score, others_of([a.effect for a in kept], place))
                     return trace.then("drop", best, placed(kept, place, entry))
         return trace
 
@@ -305,7 +322,8 @@ class Search:
         winner, names = rivals.models[0], tuple(m.effects[0] for m in rivals.models)
         model = self._polish(winner)
         first, *companions = winner.effects
-        added = [Accepted(first, names, model.score), *(Accepted(n, (n,), model.score) for n in companions)]
+        beside_first = frozenset([*trace.effects, *companions])
+        added = [Accepted(first, names, model.score, beside_first), *(Accepted(n, (n,), model.score) for n in companions)]
         return trace.then("accept", model, [*trace.accepted, *added])
 
     def _polish(self, model: Model) -> Model:
@@ -333,7 +351,8 @@ def exchange(trace: Trace, place: int, comparison: RivalComparison) -> Trace:
     models = {name: comparison.best, **comparison.alike}
     tried = [Tried(n, ranking[n].gain if n in ranking else gain, m.calibration) for n, m in models.items()]
     untried = [n for n in now.equivalent if n not in comparison.tried]
-    entry = replace(now, equivalent=(name, *comparison.alike, *untried))
+    equivalent = (name, *comparison.alike, *untried)
+    entry = replace(now, equivalent=equivalent, beside=others_of([a.effect for a in trace.accepted], place))
     if name == now.effect:
         return trace.then("swap", accepted=placed(trace.accepted, place, entry), tried=tried)
     tried.append(Tried(name, gain, comparison.best.calibration))

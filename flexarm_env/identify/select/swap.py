@@ -10,7 +10,8 @@ from flexarm_env.identify.select.criteria import Criteria
 from flexarm_env.identify.select.fits import fit_in_place
 from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.rivals import is_simpler_and_as_good, spread
-from flexarm_env.identify.select.starts import rivals_of, shows_part_of_period, simpler_beyond
+from flexarm_env.identify.select.starts import candidates, rivals_of, shows_part_of_period, simpler_beyond
+from flexarm_env.identify.select.trace import Accepted
 
 
 @dataclass(frozen=True)
@@ -21,7 +22,7 @@ class RivalComparison:
         effect: the one that fits best.
         best: the model with it.
         alike: models with others that leave as little, by effect.
-        tried: all effects that were compared.
+        tried: all effects that were compared, those that cannot be rivals among them.
         untried: rivals for which no time was left.
     """
 
@@ -35,7 +36,7 @@ class RivalComparison:
 def compare_rivals(
     calibrator: Calibrator,
     criteria: Criteria,
-    effect: str,
+    accepted: Accepted,
     now: Model,
     progress: Progress,
     compared: frozenset[str] = frozenset(),
@@ -45,21 +46,23 @@ def compare_rivals(
     Args:
         calibrator: of the recordings.
         criteria: of the search.
-        effect: one of those of the model.
+        accepted: one of the effects of the model, compared with those that it is confused with and its equivalents so far.
         now: the model with everything that was accepted.
         progress: of these calibrations.
         compared: rivals that are left out, as they were compared before.
     """
+    effect = accepted.effect
     without = now.arm.without_effect(effect)
     smooth = shows_part_of_period(now.arm, effect, calibrator.dataset)
     every = rivals_of(effect, without) + (simpler_beyond(effect, without) if smooth else [])
+    every += [name for name in accepted.equivalent[1:] if name not in every and name in candidates(without)]
     names = [name for name in every if name not in compared]
     near = now.score.windows <= calibrator.settings.errors.explained
     fitted = fit_in_place(calibrator, without, names, progress, thorough=smooth, rivals_of_noise=near)
-    untried = tuple(names[len(fitted) :])
+    tried, untried = frozenset([effect, *names[: len(fitted)]]), tuple(names[len(fitted) :])
     rivals = [m for m in fitted if m and not m.at_bound]
     if not rivals:
-        return RivalComparison(effect, now, {}, frozenset([effect]), untried)
+        return RivalComparison(effect, now, {}, tried, untried)
     measure = criteria.measure([now.score, *(m.score for m in rivals)])
     rank = criteria.rank(now.score, measure, calibrator.dataset)
     rivals.sort(key=rank)
@@ -76,7 +79,7 @@ def compare_rivals(
     taken = first.effects[0] if better else effect
     level = criteria.equivalence_level(models[taken].score, measure)
     alike = {name: m for name, m in models.items() if name != taken and measure(m.score) <= level}
-    return RivalComparison(taken, models[taken], alike, frozenset(models), untried)
+    return RivalComparison(taken, models[taken], alike, tried, untried)
 
 
 def _on_all_data(calibrator: Calibrator, rival: Model, now: Model) -> tuple[Model, Model, float]:

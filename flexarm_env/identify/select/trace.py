@@ -39,11 +39,13 @@ class Accepted:
         effect: its name.
         equivalent: all that the data cannot tell from it, itself first.
         score: errors after it was added.
+        beside: the other effects of the model in which these equivalents were found.
     """
 
     effect: str
     equivalent: tuple[str, ...]
     score: Score
+    beside: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -162,6 +164,11 @@ class Trace:
                 }
             )
         return rows
+
+
+def others_of(effects: Sequence[str], place: int) -> frozenset[str]:
+    """Collect all effects but the one in a place."""
+    return frozenset(effects) - {effects[place]}
 
 
 def placed(accepted: Sequence[Accepted], place: int, entry: Accepted) -> list[Accepted]:
