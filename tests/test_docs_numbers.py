@@ -23,6 +23,7 @@ from benchmarks.hidden_effects.score import figures
 RESULTS = PROJECT / "results"
 HIDDEN = RESULTS / "hidden_effects" / "diagnose-8"
 MACHINES = RESULTS / "machines" / "seed-336185"
+SETTINGS_OF_PROBABILITIES = PROJECT / "flexarm_env" / "identify" / "settings" / "explaining.py"
 SERVOS = RESULTS / "elastic_joint" / "seed-414678"
 
 
@@ -145,6 +146,23 @@ def tuned_table(_: str) -> str:
     return "\n".join(lines) + "\n"
 
 
+def probabilities_words(_: str) -> str:
+    """Say the probabilities of named effects, in the words of the document on the verdicts."""
+    from flexarm_env.identify.settings import SETTINGS
+
+    chances = SETTINGS.probabilities
+    explained, mostly, partly, first, little = (
+        f"{100.0 * share:.0f} %" for share in (chances.explained, chances.mostly, chances.partly, chances.first, chances.little)
+    )
+    words = (
+        f"`probability` says how often such answers were right on machines whose effects are known: {explained} where only noise "
+        f"is left, {mostly} where {little} of the excess is left at most, and {partly} where more is. Equivalent effects share "
+        f"it; the first of them has {first} of it. Machines of [the benchmark](machines.md) that decided nothing measure how "
+        "true that is."
+    )
+    return textwrap.fill(words, 128) + "\n"
+
+
 def robustness_table(numbers: str) -> str:
     """Tabulate the share of arms that do not settle, and the mean settling time, for the tuned laws and the policies."""
     result = json.loads(numbers)
@@ -230,6 +248,7 @@ TABLES = (
     Table("methods", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.json", methods_table),
     Table("rigs", PROJECT / "docs" / "rigs.md", RESULTS / "rigs" / "rigs.json", rigs_tables),
     Table("elastic joint", PROJECT / "docs" / "rigs.md", SERVOS / "table.md", hidden_effects_table),
+    Table("probabilities", PROJECT / "docs" / "your-arm.md", SETTINGS_OF_PROBABILITIES, probabilities_words),
     Table("recipes", PROJECT / "docs" / "learning.md", RESULTS / "recipe" / "recipe.md", lines_with("| observation")),
     Table("references", PROJECT / "docs" / "learning.md", RESULTS / "recipe" / "recipe.md", lines_with("| agent")),
     Table("versions", PROJECT / "CONTRIBUTING.md", RESULTS / "versions" / "versions.json", versions_table),
