@@ -233,6 +233,21 @@ def test_effects_that_give_way_to_each_other_are_compared_until_one_pair_comes_a
     assert found.effects == list(PAIR)
 
 
+def test_an_effect_that_gave_way_is_compared_with_what_took_its_place(monkeypatch):
+    """It was not calibrated beside the others as its rivals were."""
+
+    def compare(calibrator, criteria, accepted: Accepted, now: Model, progress: Progress, compared: frozenset[str]):
+        left_out.append(compared)
+        tried = frozenset([accepted.effect, "base_tilt", "air_drag"])
+        return RivalComparison("base_tilt", model("base_tilt", PAIR[0]), {}, tried)
+
+    left_out: list[frozenset[str]] = []
+    monkeypatch.setattr("flexarm_env.identify.select.search.compare_rivals", compare)
+    trace = accept(Trace.begin(model()), scored(Score(1.0, 1.0), *PAIR), *PAIR)
+    assert far_off()._compare(trace, 1, Progress()).effects == [PAIR[0], "base_tilt"]
+    assert left_out == [frozenset(), frozenset(["base_tilt", "air_drag"])]
+
+
 @pytest.mark.parametrize(("beside", "compared"), [("coulomb", ["cable_stiffness"]), ("tach_filter", [])])
 def test_equivalents_that_were_found_beside_another_effect_are_compared_anew_at_the_noise(monkeypatch, beside, compared):
     def compare(self: Search, trace: Trace, place: int, progress: Progress) -> Trace:

@@ -204,7 +204,10 @@ class Search:
         return trace if kept == list(trace.accepted) else trace.then("swap", accepted=kept)
 
     def _compare(self, trace: Trace, place: int, progress: Progress, compared: frozenset[str] = frozenset()) -> Trace:
-        """Compare an accepted effect with its rivals, and what takes its place with those of its own that are new."""
+        """Compare an accepted effect with its rivals, and what takes its place with those of its own that are new.
+
+        The one that gave way is calibrated anew then, too: its calibration was not from its signature, and may have ended early.
+        """
         effect = trace.effects[place]
         comparison = compare_rivals(self.calibrator, self.criteria, trace.accepted[place], trace.model, progress, compared)
         trace = exchange(trace, place, comparison)
@@ -212,7 +215,7 @@ class Search:
             return self._stop(trace, f"{effect} was compared with {', '.join(comparison.untried)}")
         if comparison.effect == effect or self.is_late:
             return trace
-        return self._compare(trace, place, progress, compared | comparison.tried)
+        return self._compare(trace, place, progress, compared | comparison.tried - {effect})
 
     def _next_place(self, trace: Trace, compared: Mapping[str, frozenset[str]], untried: bool) -> int | None:
         """Find the first effect that was not compared yet beside the others as they are now, and may give way to a rival."""
