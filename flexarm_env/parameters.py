@@ -43,6 +43,7 @@ class Parameter:
         meaning: description in one line.
         source: equation, table or paper.
         of_command: whether the quantity is a command, in A or V.
+        of_travel: whether it is a place within the arm's travel, whose typical value is that of the thesis's arm.
         is_count: whether it is a whole number.
 
     Example:
@@ -60,15 +61,16 @@ class Parameter:
     meaning: str = ""
     source: str = ""
     of_command: bool = False
+    of_travel: bool = False
     is_count: bool = False
 
     def scaled_by(self, scales: Mapping[str, float]) -> float:
         """Look up the factor on the typical size.
 
         Args:
-            scales: factors by unit, and "command" for commands; 1 where the unit is missing.
+            scales: factors by unit, "command" for commands and "travel" for places; 1 where the unit is missing.
         """
-        return scales.get("command" if self.of_command else self.unit, 1.0)
+        return scales.get("command" if self.of_command else "travel" if self.of_travel else self.unit, 1.0)
 
     def under(self, command: str) -> Parameter:
         """Fill in the unit of a command, which the catalogue leaves open.

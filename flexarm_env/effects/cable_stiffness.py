@@ -16,7 +16,7 @@ class CableStiffness(Effect):
     equation = "τ = −k (θ − θ₀)"
     parameters: ClassVar = {
         "stiffness": Parameter("N*m/rad", 0.0, 1e5, 0.05, null=0.0, meaning="k"),
-        "rest_angle": Parameter("rad", -6.3, 6.3, 0.0, meaning="θ₀, where it does not pull, within a turn"),
+        "rest_angle": Parameter("rad", -6.3, 6.3, 0.0, meaning="θ₀, where it does not pull, within a turn", of_travel=True),
     }
     looks_like = "missing torque falls along a straight line with the angle"
     confused_with = ("constant_torque", "base_tilt")

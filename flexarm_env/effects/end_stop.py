@@ -15,8 +15,8 @@ class EndStop(Effect):
     equation = "τ = −k (θ − θ_s + T ω) beyond θ_s on either side, never pulling"
     parameters: ClassVar = {
         "stiffness": Parameter("N*m/rad", 0.0, 1e7, 20.0, null=0.0, meaning="k, of the stops"),
-        "upper": Parameter("rad", -12.6, 12.6, 0.8, meaning="θ_s, angle of contact at the upper end"),
-        "lower": Parameter("rad", -12.6, 12.6, -0.8, meaning="θ_s at the lower end"),
+        "upper": Parameter("rad", -1e4, 1e4, 0.8, meaning="θ_s, angle of contact at the upper end", of_travel=True),
+        "lower": Parameter("rad", -1e4, 1e4, -0.8, meaning="θ_s at the lower end", of_travel=True),
         "damping_time": Parameter("s", 0.0, 0.1, 2e-3, meaning="T, damping of the stops over k"),
     }
     looks_like = "the angle never passes a value, and the arm bounces back from it"

@@ -62,7 +62,7 @@ def test_its_bounds_hold_what_small_and_large_machines_have(name, force, turn):
     """A small joint has 1e-4 of the torque of the thesis, and a screw of 1 m for a radian a hundredth of its turn."""
     turns = {"rad/s": 1, "1/rad": -1, "N*m/rad": -1, "rad/N/m": 1, "N*m*s": -1}
     for key, p in catalogue()[name].parameters.items():
-        size = p.typical * force ** force_power(p.unit) * turn ** turns.get(p.unit, 0)
+        size = p.typical * force ** force_power(p.unit) * turn ** (1 if p.of_travel else turns.get(p.unit, 0))
         assert p.low <= size <= p.high, (key, size)
         assert p.null != math.inf or p.low <= 1e-2 * size, "a spring may be a hundred times softer than is typical"
         assert p.unit != "rad/N/m" or p.high >= 1e2 * size, "and a compliance as much larger"

@@ -53,7 +53,7 @@ def _inertia(arm: Arm) -> float:
 
 
 def scales_of(arm: Arm, runs: Sequence[Run], signals: Sequence[str], reference: ReferenceSizes) -> dict[str, float]:
-    """Compute the ratio of sizes to the reference, by unit, and that of commands for "command"."""
+    """Compute the ratio of sizes to the reference, by unit, that of commands for "command" and of places for "travel"."""
     torque = torque_scale(arm, runs) / reference.torque
     angle = speed = 1.0
     if "arm_angle" in signals:
@@ -73,6 +73,7 @@ def scales_of(arm: Arm, runs: Sequence[Run], signals: Sequence[str], reference: 
         "kg*m**2": inertia,
         "1/rad": 1.0 / angle,
         "rad/s": speed,
+        "travel": angle,
         "command": max(max(float(np.abs(run.command).max()) for run in runs) / reference.command, reference.least_ratio),
     }
 
