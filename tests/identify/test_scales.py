@@ -6,26 +6,29 @@ import numpy as np
 import pytest
 
 from flexarm_env import Arm, Recording
-from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.replay.dataset import Dataset, prepare
 from flexarm_env.identify.select.starts import starts_of
 
 TIME = np.arange(0.0, 4.0, 0.01)
 
 
-def sizes(length: float, current: float, angle: float) -> dict[str, float]:
-    """Sizes of an arm of a length [m] that is driven by currents [A] through angles [rad]."""
+def recorded(length: float, current: float, angle: float) -> tuple[Arm, Dataset]:
+    """An arm of a length [m], driven by currents [A] through angles [rad]."""
     arm = Arm.load("thesis-fem").with_values({"beam.length": length})
     signals = {"arm_angle": angle * np.sin(2.0 * TIME), "motor_speed": 2.0 * angle * np.cos(2.0 * TIME)}
     run = Recording.from_arrays("run", TIME, "current", current * np.sign(np.sin(2.0 * TIME)), signals)
-    return dict(prepare(arm, [run])[1].scales)
+    return prepare(arm, [run])
+
+
+def sizes(length: float, current: float, angle: float) -> dict[str, float]:
+    """Sizes of such an arm."""
+    return dict(recorded(length, current, angle)[1].scales)
 
 
 @pytest.mark.parametrize("angle", [0.01, 1.0, 40.0])
 def test_stops_are_tried_within_the_travel_of_a_machine_of_any_size(angle):
-    arm = Arm.load("thesis-fem")
-    signals = {"arm_angle": angle * np.sin(2.0 * TIME), "motor_speed": 2.0 * angle * np.cos(2.0 * TIME)}
-    run = Recording.from_arrays("run", TIME, "current", np.sign(np.sin(2.0 * TIME)), signals)
-    places = [start["upper"] / angle for start in starts_of(arm, "end_stop", prepare(arm, [run])[1])]
+    arm, dataset = recorded(1.0, 1.0, angle)
+    places = [start["upper"] / angle for start in starts_of(arm, "end_stop", dataset)]
     assert places == pytest.approx([0.24, 0.48, 0.96], rel=0.01)  # 0.3, 0.6 and 1.2 rad of the 1.25 rad of the thesis's arm
 
 

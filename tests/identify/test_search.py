@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -200,25 +199,17 @@ def test_an_effect_is_added_beside_what_forecasts_ask_for_unless_that_explains_a
     assert tuple(far_off().run(scored(Score(26.0, 480.0)), Progress()).effects) == found
 
 
-def in_another_place(name: str) -> Callable[[Search, Trace, int, Progress], Trace]:
-    """A comparison in which no effect gives way but the last one, once."""
-
+def test_when_one_effect_has_given_way_the_others_are_compared_anew(monkeypatch):
     def compare(self: Search, trace: Trace, place: int, progress: Progress) -> Trace:
-        names = [name if place == 1 and n == PAIR[1] and at == 1 else n for at, n in enumerate(trace.effects)]
         compared.append(trace.effects[place])
-        return accept(trace, scored(Score(1.5, 1.5), *names), *names)
+        names = [PAIR[0], "base_tilt"] if place == 1 else trace.effects
+        return accept(trace, scored(Score(1.5, 1.5)), *names)
 
     compared: list[str] = []
-    compare.compared = compared
-    return compare
-
-
-def test_when_one_effect_has_given_way_the_others_are_compared_anew(monkeypatch):
-    compare = in_another_place("base_tilt")
     monkeypatch.setattr(Search, "_compare", compare)
-    trace = accept(Trace.begin(model()), scored(Score(2.0, 2.0), *PAIR), *PAIR)
+    trace = accept(Trace.begin(model()), scored(Score(2.0, 2.0)), *PAIR)
     assert far_off().swap(trace, Progress()).effects == [PAIR[0], "base_tilt"]
-    assert compare.compared == [*PAIR, PAIR[0]]
+    assert compared == [*PAIR, PAIR[0]]
 
 
 def test_effects_that_give_way_to_each_other_are_compared_until_one_pair_comes_again(monkeypatch):

@@ -215,7 +215,7 @@ class Search:
             return self._stop(trace, f"{effect} was compared with {', '.join(comparison.untried)}")
         if comparison.effect == effect or self.is_late:
             return trace
-        return self._compare(trace, place, progress, compared | comparison.tried - {effect})
+        return self._compare(trace, place, progress, compared | (comparison.tried - {effect}))
 
     def _next_place(self, trace: Trace, compared: Mapping[str, frozenset[str]], untried: bool) -> int | None:
         """Find the first effect that was not compared yet beside the others as they are now, and may give way to a rival."""
@@ -254,8 +254,8 @@ class Search:
                 if better:
                     best = min(better, key=lambda m: m.score.windows)
                     name = best.effects[0]
-                    names = [name, *(m.effects[0] for m in better if m is not best)]
-                    entry = Accepted(name, tuple(names), best.score, others_of([a.effect for a in kept], place))
+                    equivalent = (name, *(m.effects[0] for m in better if m is not best))
+                    entry = Accepted(name, equivalent, best.score, others_of([a.effect for a in kept], place))
                     return trace.then("drop", best, placed(kept, place, entry))
         return trace
 

@@ -55,7 +55,8 @@ def compare_rivals(
     without = now.arm.without_effect(effect)
     smooth = shows_part_of_period(now.arm, effect, calibrator.dataset)
     every = rivals_of(effect, without) + (simpler_beyond(effect, without) if smooth else [])
-    every += [name for name in accepted.equivalent[1:] if name not in every and name in candidates(without)]
+    equivalent = set(accepted.equivalent[1:]) - set(every)
+    every += [name for name in candidates(without) if name in equivalent]
     names = [name for name in every if name not in compared]
     near = now.score.windows <= calibrator.settings.errors.explained
     fitted = fit_in_place(calibrator, without, names, progress, thorough=smooth, rivals_of_noise=near)
