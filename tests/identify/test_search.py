@@ -20,7 +20,7 @@ from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.screen import Trial
 from flexarm_env.identify.select.search import Search, exchange
 from flexarm_env.identify.select.starts import rivals_of
-from flexarm_env.identify.select.swap import RivalComparison, compare_rivals
+from flexarm_env.identify.select.swap import RivalComparison
 from flexarm_env.identify.select.trace import Accepted, Trace, Tried
 from flexarm_env.identify.settings import SETTINGS
 from flexarm_env.recordings.recording import Recording
@@ -255,15 +255,15 @@ def test_equivalents_that_were_found_beside_another_effect_are_compared_anew_at_
     assert seen == compared
 
 
-def test_an_equivalent_that_cannot_be_a_rival_at_the_noise_is_none_any_more(monkeypatch):
-    monkeypatch.setattr("flexarm_env.identify.select.swap.fit_in_place", lambda *a, **b: [None] * len(a[2]))
-    search, now = far_off(), scored(Score(1.0, 1.0), "cable_stiffness", "tach_filter")
-    accepted = Accepted("cable_stiffness", ("cable_stiffness", "air_drag"), now.score)
-    compared = compare_rivals(search.calibrator, search.criteria, accepted, now, Progress())
-    assert "air_drag" in compared.tried
-    assert not compared.alike
-
-
 @pytest.mark.parametrize(("left", "compares"), [(Score(8.9, 19.0), True), (Score(20.0, 200.0), False), (Score(2.9, 300.0), True)])
 def test_rivals_are_compared_far_off_only_where_most_is_explained(left, compares):
     assert far_off().criteria.can_compare_rivals(scored(left)) == compares
+
+
+@pytest.mark.parametrize(("windows", "named"), [(9.7, ("coulomb", "constant_torque")), (14.0, ("end_stop",))])
+def test_two_effects_come_before_one_that_imitates_them_in_whole_runs_alone(windows, named):
+    """A stop with four numbers halts an arm where friction does, and is no nearer in windows."""
+    pair = scored(Score(windows, 14.8), "coulomb", "constant_torque")
+    models = [scored(Score(14.6, 14.7), "end_stop"), pair, scored(Score(22.6, 60.0), "coulomb")]
+    search = far_off()
+    assert search._simplest(models, search.criteria.measure([m.score for m in models])).effects == named

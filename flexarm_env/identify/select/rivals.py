@@ -93,6 +93,11 @@ def is_simpler_and_as_good(model: Model, other: Model, most: float, same: float)
     return numbers < others and model.error_over(other) <= most
 
 
+def is_of_fewer_numbers(model: Model, other: Model) -> bool:
+    """Whether a model has fewer calibrated numbers than another."""
+    return len(model.calibration.parameters) < len(other.calibration.parameters)
+
+
 def _simplest(ranked: Sequence[Model], most: float, same: float) -> Model:
     """Choose the simplest of the models that are as good as the first one."""
     every = [ranked[0], *(m for m in ranked if is_simpler_and_as_good(m, ranked[0], most, same))]

@@ -338,13 +338,18 @@ class Search:
         return judge((), calibration, self.calibrator.dataset)
 
     def _simplest(self, models: Sequence[Model], measure: Measure) -> Model:
-        """Choose the best model; a single effect where a companion beside one adds nothing worthwhile."""
-        winner, singles = models[0], [m for m in models if len(m.effects) == 1]
-        if len(winner.effects) == 1 or not singles:
-            return winner
+        """Choose the best model; a single effect where no companion of nearly the best adds anything worthwhile.
+
+        Far off, whole runs decide, and a flexible enough effect imitates two of them there alone: windows tell them apart.
+        """
+        singles, pairs = ([m for m in models if (len(m.effects) == 1) == single] for single in (True, False))
+        if not singles:
+            return models[0]
         measures: tuple[Measure, ...] = (measure, lambda s: s.excess)  # far off, one model may rest where it should move
-        worthwhile = any(self.criteria.is_worthwhile(singles[0], winner, m) for m in measures)
-        return winner if worthwhile else singles[0]
+        level = self.criteria.equivalence_level(models[0].score, measure)
+        near = [m for m in pairs if measure(m.score) <= level]
+        worthwhile = [m for m in near if any(self.criteria.is_worthwhile(singles[0], m, by) for by in measures)]
+        return worthwhile[0] if worthwhile else singles[0]
 
 
 def exchange(trace: Trace, place: int, comparison: RivalComparison) -> Trace:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.progress import Progress
-from flexarm_env.identify.select.criteria import Criteria
+from flexarm_env.identify.select.criteria import Criteria, Measure
 from flexarm_env.identify.select.fits import fit_in_place
 from flexarm_env.identify.select.model import Model, judge
-from flexarm_env.identify.select.rivals import is_simpler_and_as_good, spread
+from flexarm_env.identify.select.rivals import is_of_fewer_numbers, is_simpler_and_as_good, spread
 from flexarm_env.identify.select.starts import candidates, rivals_of, shows_part_of_period, simpler_beyond
 from flexarm_env.identify.select.trace import Accepted
 
@@ -41,7 +42,9 @@ def compare_rivals(
     progress: Progress,
     compared: frozenset[str] = frozenset(),
 ) -> RivalComparison:
-    """Compare an effect of a model with its rivals.
+    """Compare an effect of a model with the rival that fits best, and with the best of those of fewer numbers.
+
+    A rival of more numbers that fits as well does not stand before a simpler one.
 
     Args:
         calibrator: of the recordings.
@@ -64,23 +67,33 @@ def compare_rivals(
     rivals = [m for m in fitted if m and not m.at_bound]
     if not rivals:
         return RivalComparison(effect, now, {}, tried, untried)
-    measure = criteria.measure([now.score, *(m.score for m in rivals)])
-    rank = criteria.rank(now.score, measure, calibrator.dataset)
+    own = replace(now, effects=(effect,))
+    measure = criteria.measure([own.score, *(m.score for m in rivals)])
+    rank = criteria.rank(own.score, measure, calibrator.dataset)
     rivals.sort(key=rank)
-    rivals[0] = _polish_near(calibrator, rivals[0], now)
-    first = rivals[0]
-    rival, own, alike_to = _on_all_data(calibrator, first, now)
+    rivals[0] = _polish_near(calibrator, rivals[0], own)
+    level = criteria.equivalence_level(own.score, measure)
+    simpler = [m for m in rivals[1:] if is_of_fewer_numbers(m, own) and measure(m.score) <= level]
+    best = own
+    for rival in (rivals[0], *simpler[:1]):
+        if _takes_place(calibrator, criteria, rival, best, measure, rank):
+            best = rival
+    level = criteria.equivalence_level(best.score, measure)
+    alike = {m.effects[0]: m for m in (own, *rivals) if m is not best and measure(m.score) <= level}
+    return RivalComparison(best.effects[0], best, alike, tried, untried)
+
+
+def _takes_place(
+    calibrator: Calibrator, criteria: Criteria, rival: Model, now: Model, measure: Measure, rank: Callable[[Model], float]
+) -> bool:
+    """Whether a rival fits better than the effect of a model, is simpler and as good, or as good where that ran to its bound."""
+    one, other, alike_to = _on_all_data(calibrator, rival, now)
     same = calibrator.settings.errors.same
-    better = criteria.replaces(rival, own, rank) and not is_simpler_and_as_good(own, rival, alike_to, same)
-    is_equivalent = measure(rival.score) <= criteria.equivalence_level(own.score, measure)
-    better = better or (is_equivalent and is_simpler_and_as_good(rival, own, alike_to, same))
-    if replace(now, effects=(effect,)).at_bound:  # no size of it explains the data
-        better = better or measure(first.score) <= criteria.equivalence_level(now.score, measure)
-    models = {effect: now} | {m.effects[0]: m for m in rivals}
-    taken = first.effects[0] if better else effect
-    level = criteria.equivalence_level(models[taken].score, measure)
-    alike = {name: m for name, m in models.items() if name != taken and measure(m.score) <= level}
-    return RivalComparison(taken, models[taken], alike, tried, untried)
+    if criteria.replaces(one, other, rank) and not is_simpler_and_as_good(other, one, alike_to, same):
+        return True
+    if is_simpler_and_as_good(one, other, alike_to, same):
+        return measure(one.score) <= criteria.equivalence_level(other.score, measure)
+    return now.at_bound and measure(rival.score) <= criteria.equivalence_level(now.score, measure)
 
 
 def _on_all_data(calibrator: Calibrator, rival: Model, now: Model) -> tuple[Model, Model, float]:

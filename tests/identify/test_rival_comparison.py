@@ -1,0 +1,87 @@
+"""An accepted effect beside its rivals: which one takes its place, and what stays equivalent."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from types import SimpleNamespace
+
+import pytest
+
+from flexarm_env import Arm
+from flexarm_env.identify.progress import Progress
+from flexarm_env.identify.replay.error_measure import Score
+from flexarm_env.identify.select import swap
+from flexarm_env.identify.select.criteria import ThresholdCriteria
+from flexarm_env.identify.select.model import Model
+from flexarm_env.identify.select.trace import Accepted
+from flexarm_env.identify.settings import SETTINGS
+
+NUMBERS = {"constant_torque": 1, "asymmetric_coulomb": 1, "cable_stiffness": 2, "end_stop": 4}
+BASE = 3  # numbers of the constants
+
+
+def model(effect: str, error: float, beside: tuple[str, ...] = ()) -> Model:
+    """Of the thesis's arm with an effect, beside others that a model has."""
+    arm = Arm.load("thesis")
+    for name in (effect, *beside):
+        arm = arm.with_effect(name)
+    free = SimpleNamespace(arm=arm, parameters=[SimpleNamespace(path=f"hub.{i}") for i in range(BASE + NUMBERS[effect])])
+    return Model((effect, *beside), free, Score(error, error), Score(error, error))
+
+
+def compared(
+    monkeypatch: pytest.MonkeyPatch, effect: str, error: float, rivals: dict[str, float | None], equivalent: tuple[str, ...] = ()
+) -> swap.RivalComparison:
+    """An effect that leaves an error beside a tachometer's filter, compared with rivals that leave theirs, in its place."""
+
+    def fit(calibrator, without, effects, progress, **_):
+        errors = {name: rivals.get(name) for name in effects}
+        return [None if left is None else model(name, left) for name, left in errors.items()]
+
+    def judge(effects, calibration, dataset):
+        return next(m for m in known if m.calibration is calibration)
+
+    def calibrated(calibration):
+        return calibration
+
+    known: list[Model] = []
+    monkeypatch.setattr(swap, "fit_in_place", lambda *a, **b: [known.append(m) or m if m else None for m in fit(*a, **b)])
+    monkeypatch.setattr(swap, "judge", judge)
+    calibrator = SimpleNamespace(
+        settings=SETTINGS,
+        workers=SimpleNamespace(threads=nullcontext),
+        dataset=SimpleNamespace(signals=(), readings=lambda held_out: 2000),
+        polish=calibrated,
+        calibrate_on_all_data=calibrated,
+    )
+    now = model(effect, error, beside=("tach_filter",))
+    known.append(now)
+    criteria = ThresholdCriteria(Score(100.0, 900.0), Score(100.0, 900.0), True, SETTINGS)
+    return swap.compare_rivals(calibrator, criteria, Accepted(effect, (effect, *equivalent), now.score), now, Progress())
+
+
+def test_an_equivalent_that_cannot_be_a_rival_at_the_noise_is_none_any_more(monkeypatch):
+    found = compared(monkeypatch, "cable_stiffness", 1.0, {}, equivalent=("air_drag",))
+    assert "air_drag" in found.tried
+    assert not found.alike
+
+
+@pytest.mark.parametrize("stop", [None, 1.0495])
+def test_a_rival_that_fits_best_does_not_keep_a_simpler_one_from_the_place(monkeypatch, stop):
+    """Stops on either side of a cable's rest fit as the cable does; a constant torque does so with one number."""
+    found = compared(monkeypatch, "cable_stiffness", 1.05, {"end_stop": stop, "constant_torque": 1.051}, ("end_stop",))
+    assert found.effect == "constant_torque"
+    assert set(found.alike) == {"cable_stiffness"} | ({"end_stop"} if stop else set())
+
+
+def test_a_simpler_rival_that_leaves_more_does_not_take_the_place(monkeypatch):
+    found = compared(monkeypatch, "cable_stiffness", 1.05, {"end_stop": 1.0495, "constant_torque": 1.2}, ("end_stop",))
+    assert found.effect == "cable_stiffness"
+
+
+@pytest.mark.parametrize("first", ["constant_torque", "asymmetric_coulomb"])
+def test_of_exact_twins_the_law_of_fewer_quantities_has_the_place_whatever_stands_beside_it(monkeypatch, first):
+    (other,) = {"constant_torque", "asymmetric_coulomb"} - {first}
+    found = compared(monkeypatch, first, 1.05, {other: 1.05})
+    assert found.effect == "constant_torque"
+    assert set(found.alike) == {"asymmetric_coulomb"}
