@@ -32,30 +32,19 @@ def model(effect: str, error: float, beside: tuple[str, ...] = ()) -> Model:
 def compared(
     monkeypatch: pytest.MonkeyPatch, effect: str, error: float, rivals: dict[str, float | None], equivalent: tuple[str, ...] = ()
 ) -> swap.RivalComparison:
-    """An effect that leaves an error beside a tachometer's filter, compared with rivals that leave theirs, in its place."""
-
-    def fit(calibrator, without, effects, progress, **_):
-        errors = {name: rivals.get(name) for name in effects}
-        return [None if left is None else model(name, left) for name, left in errors.items()]
-
-    def judge(effects, calibration, dataset):
-        return next(m for m in known if m.calibration is calibration)
-
-    def calibrated(calibration):
-        return calibration
-
-    known: list[Model] = []
-    monkeypatch.setattr(swap, "fit_in_place", lambda *a, **b: [known.append(m) or m if m else None for m in fit(*a, **b)])
-    monkeypatch.setattr(swap, "judge", judge)
+    """An effect beside a limit of the command's rate, compared with rivals in its place, by the errors that they leave."""
+    now = model(effect, error, beside=("rate_limit",))
+    fitted = {name: left and model(name, left) for name, left in rivals.items()}
+    by_calibration = {id(m.calibration): m for m in (now, *fitted.values()) if m}
+    monkeypatch.setattr(swap, "fit_in_place", lambda _, without, effects, *a, **b: [fitted.get(name) for name in effects])
+    monkeypatch.setattr(swap, "judge", lambda effects, calibration, dataset: by_calibration[id(calibration)])
     calibrator = SimpleNamespace(
         settings=SETTINGS,
         workers=SimpleNamespace(threads=nullcontext),
         dataset=SimpleNamespace(signals=(), readings=lambda held_out: 2000),
-        polish=calibrated,
-        calibrate_on_all_data=calibrated,
+        polish=lambda calibration: calibration,
+        calibrate_on_all_data=lambda calibration: calibration,
     )
-    now = model(effect, error, beside=("tach_filter",))
-    known.append(now)
     criteria = ThresholdCriteria(Score(100.0, 900.0), Score(100.0, 900.0), True, SETTINGS)
     return swap.compare_rivals(calibrator, criteria, Accepted(effect, (effect, *equivalent), now.score), now, Progress())
 
@@ -66,16 +55,16 @@ def test_an_equivalent_that_cannot_be_a_rival_at_the_noise_is_none_any_more(monk
     assert not found.alike
 
 
-@pytest.mark.parametrize("stop", [None, 1.0495])
+@pytest.mark.parametrize("stop", [None, 1.048])
 def test_a_rival_that_fits_best_does_not_keep_a_simpler_one_from_the_place(monkeypatch, stop):
     """Stops on either side of a cable's rest fit as the cable does; a constant torque does so with one number."""
-    found = compared(monkeypatch, "cable_stiffness", 1.05, {"end_stop": stop, "constant_torque": 1.051}, ("end_stop",))
+    found = compared(monkeypatch, "cable_stiffness", 1.05, {"end_stop": stop, "constant_torque": 1.0519}, ("end_stop",))
     assert found.effect == "constant_torque"
     assert set(found.alike) == {"cable_stiffness"} | ({"end_stop"} if stop else set())
 
 
 def test_a_simpler_rival_that_leaves_more_does_not_take_the_place(monkeypatch):
-    found = compared(monkeypatch, "cable_stiffness", 1.05, {"end_stop": 1.0495, "constant_torque": 1.2}, ("end_stop",))
+    found = compared(monkeypatch, "cable_stiffness", 1.05, {"end_stop": 1.048, "constant_torque": 1.2}, ("end_stop",))
     assert found.effect == "cable_stiffness"
 
 
