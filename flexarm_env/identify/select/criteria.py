@@ -123,6 +123,8 @@ class ThresholdCriteria:
         An imitation of another effect often succeeds in only one of the two, or stops short of the noise.
         """
         score, errors, shares = found.score, self.settings.errors, self.settings.selecting
+        if self._worsens_whole_runs(score):
+            return False
         share = shares.least_total_gain if score.windows > errors.far_off else shares.least_total_gain_near
         pairs = [(self.refitted.windows, score.windows, errors.explained, share)]
         if self.judges_free_run:
@@ -131,10 +133,16 @@ class ThresholdCriteria:
 
     def explains_most(self, score: Score) -> bool:
         """Whether effects remove most of the excess, in windows and in whole runs alike, though more than the noise is left."""
+        if self._worsens_whole_runs(score):
+            return False
         pairs = [(self.refitted.excess, score.excess)]
         if self.judges_free_run:
             pairs.append((self.refitted.free_run_excess, score.free_run_excess))
         return all(left <= (1.0 - self.settings.selecting.least_total_gain) * before for before, left in pairs)
+
+    def _worsens_whole_runs(self, score: Score) -> bool:
+        """Whether effects raise the error of whole runs: where torque noise is stated, nothing more can be said of it."""
+        return not self.judges_free_run and score.free_run > self.refitted.free_run
 
     def leaves_only_noise(self, score: Score) -> bool:
         """Whether windows end at the noise, in all signals together, and in each that the effects touch near it.
