@@ -43,7 +43,7 @@ class Parameter:
         meaning: description in one line.
         source: equation, table or paper.
         of_command: whether the quantity is a command, in A or V.
-        of_travel: whether it is a place within the arm's travel, whose typical value is that of the thesis's arm.
+        of_travel: whether it is a place within the arm's travel, whose typical value is from the middle of the thesis's arm's.
         is_count: whether it is a whole number.
 
     Example:

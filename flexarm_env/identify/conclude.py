@@ -89,7 +89,8 @@ def conclude(
 
 def verdict_of(trace: Trace, criteria: Criteria) -> str:
     """Reach the verdict of a search; without effects it is "unknown" where one that was left out might have been accepted."""
-    verdict, base = criteria.verdict(trace.effects, trace.model), trace.steps[0].model
+    base = trace.steps[0].model
+    verdict = criteria.verdict(trace.effects, base, trace.model)
     is_open = trace.stop is not None and not trace.accepted and not criteria.is_sufficient(base)
     return "unknown" if is_open else verdict
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -30,6 +32,14 @@ def test_stops_are_tried_within_the_travel_of_a_machine_of_any_size(angle):
     arm, dataset = recorded(1.0, 1.0, angle)
     places = [start["upper"] / angle for start in starts_of(arm, "end_stop", dataset)]
     assert places == pytest.approx([0.24, 0.48, 0.96], rel=0.01)  # 0.3, 0.6 and 1.2 rad of the 1.25 rad of the thesis's arm
+
+
+def test_stops_and_a_cables_rest_are_tried_around_the_middle_of_the_travel():
+    arm, dataset = recorded(1.0, 1.0, 1.0)
+    aside = replace(dataset, runs=tuple(replace(run, measured=run.measured + np.array([3.0, 0.0])) for run in dataset.runs))
+    for effect, place in (("end_stop", "upper"), ("end_stop", "lower"), ("cable_stiffness", "rest_angle")):
+        pairs = zip(starts_of(arm, effect, dataset), starts_of(arm, effect, aside), strict=True)
+        assert all(moved[place] - start[place] == pytest.approx(3.0) for start, moved in pairs)
 
 
 def shares(scales: dict[str, float], length: float) -> dict[str, float]:

@@ -14,9 +14,12 @@ from flexarm_env.identify.select.model import Model
 from flexarm_env.identify.settings import SETTINGS
 
 
-def verdict(before: Score, first: Score, best: Score, accepted: list[str], arm: str = "thesis") -> str:
-    judges_free_run = error_measure(Arm.load(arm)).judges_free_run
-    return ThresholdCriteria(before, first, judges_free_run, SETTINGS).verdict(accepted, Model((), None, best, best))
+def verdict(
+    before: Score, first: Score, best: Score, accepted: list[str], arm: str = "thesis", fitted: Score | None = None
+) -> str:
+    """By held-out errors: of the arm as given, with constants, with effects; and by the constants' on the fitted part."""
+    criteria = ThresholdCriteria(before, first, error_measure(Arm.load(arm)).judges_free_run, SETTINGS)
+    return criteria.verdict(accepted, Model((), None, first, fitted or first), Model((), None, best, best))
 
 
 BEFORE, FIRST = Score(20.0, 60.0), Score(3.0, 12.0)
@@ -64,6 +67,13 @@ def test_a_weak_effect_is_named_though_a_whole_run_gains_nothing():
 def test_constants_are_blamed_where_nothing_else_is_left():
     assert verdict(BEFORE, Score(1.0, 1.0), Score(1.0, 1.0), []) == "parameters"
     assert verdict(Score(1.0, 1.0), Score(1.0, 1.0), Score(1.0, 1.0), []) == "nothing_missing"
+
+
+@pytest.mark.parametrize("accepted", [[], ["pot_nonlinearity"]])
+def test_something_is_missing_where_the_fitted_part_alone_shows_it(accepted):
+    """Of a stop that was touched once, before what is held out; an effect that imitates it there explains no whole run."""
+    first = Score(1.08, 640.0)
+    assert verdict(first, first, Score(1.07, 600.0), accepted, fitted=Score(134.0, 590.0)) == "unknown"
 
 
 def rival(fitted: float, held: float, parameters: int = 10) -> float:

@@ -69,6 +69,15 @@ class Dataset:
         there = np.concatenate([~np.isnan(run.measured) for run in self.runs])
         return np.maximum(there.sum(axis=0), 1) / len(there)
 
+    @functools.cached_property
+    def middle_of_travel(self) -> float:
+        """Middle of the hub's measured angles, rad; 0 without any."""
+        if "arm_angle" not in self.signals:
+            return 0.0
+        column = self.signals.index("arm_angle")
+        angles = np.concatenate([run.measured[:, column] for run in self.runs])
+        return float(np.nan_to_num((np.fmin.reduce(angles) + np.fmax.reduce(angles)) / 2.0))
+
     def readings(self, held_out: bool) -> int:
         """Count the readings of the held-out or the fitted part."""
         return sum(run.readings(~run.train if held_out else run.train) for run in self.runs)

@@ -66,8 +66,8 @@ class Criteria(Protocol):
     def equivalence_level(self, best: Score, measure: Measure) -> float:
         """Compute the largest excess that an effect leaves that is equivalent to the best one."""
 
-    def verdict(self, accepted: Sequence[str], found: Model) -> str:
-        """Reach the verdict of a search from the effects that it accepted and the model that has them."""
+    def verdict(self, accepted: Sequence[str], base: Model, found: Model) -> str:
+        """Reach the verdict of a search from the effects that it accepted, the model without them and the one that has them."""
 
 
 #: Builds criteria from the score of the arm as given, that with its constants calibrated, whether the free run says anything of
@@ -113,9 +113,14 @@ class ThresholdCriteria:
         return little and found.fitted_score.windows < errors.explained
 
     def is_worthwhile(self, without: Model, found: Model, measure: Measure) -> bool:
-        """Whether one more effect removes a share of the excess, and more than fits leave that end early."""
-        removed = measure(without.score) - measure(found.score)
-        return removed >= max(self.settings.selecting.least_gain * measure(without.score), self._least(measure))
+        """Whether one more effect removes a share of the excess, and more than fits leave that end early.
+
+        It counts on the fitted part where that alone shows that something is missing, such as a stop that was touched once.
+        """
+        explained = self.settings.errors.explained
+        is_early = without.score.windows < explained <= without.fitted_score.windows
+        before, after = (measure(m.fitted_score if is_early else m.score) for m in (without, found))
+        return before - after >= max(self.settings.selecting.least_gain * before, self._least(measure))
 
     def explains(self, found: Model) -> bool:
         """Whether a model leaves nothing to explain, or explains windows and free runs alike, as true effects do.
@@ -217,13 +222,16 @@ class ThresholdCriteria:
         left = measure(best)
         return left + self.equivalent_difference(measure(self.refitted) - left, left)
 
-    def verdict(self, accepted: Sequence[str], found: Model) -> str:
-        """Name effects that explain the data or most of them; else say whether the constants do."""
+    def verdict(self, accepted: Sequence[str], base: Model, found: Model) -> str:
+        """Name effects that explain the data or most of them; else say whether the constants do, of the fitted part as well.
+
+        A stop may be touched in that part alone: what is held out then ends at the noise, and says nothing of it.
+        """
         if accepted and self.explains(found) and self.leaves_only_noise(found.score):
             return "effects"
         if accepted and (self.explains(found) or self.explains_most(found.score)):
             return "partly"
-        if self.refitted.windows > self.settings.errors.explained:
+        if max(base.score.windows, base.fitted_score.windows) > self.settings.errors.explained:
             return "unknown"
         wrong = self.nominal.excess > self.settings.selecting.refit_needed * self.refitted.excess
         return "parameters" if wrong and self.nominal.windows > self.settings.errors.nothing_left else "nothing_missing"

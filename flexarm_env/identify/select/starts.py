@@ -116,8 +116,9 @@ def sized(arm: Arm, effect: str, start: Mapping[str, float], factor: float) -> d
 
 
 def _scaled(arm: Arm, effect: str, start: Mapping[str, float], dataset: Dataset) -> dict[str, float]:
-    """Convert a start to the scales of the data, within the bounds."""
+    """Convert a start to the scales of the data, and places to its travel, within the bounds."""
     parameters = arm.known[effect].parameters
     values = {key: p.typical for key, p in parameters.items()}
     values |= {key: value * parameters[key].scaled_by(dataset.scales) for key, value in start.items()}
+    values |= {key: value + dataset.middle_of_travel for key, value in values.items() if parameters[key].of_travel}
     return {key: min(max(v, parameters[key].low), parameters[key].high) for key, v in values.items()}
