@@ -146,6 +146,12 @@ class Diagnosis(Shown):
     probability: list[list[float]] = field(default_factory=list)
     stopped: bool | None = None
 
+    def __repr__(self) -> str:
+        if self.recordings:
+            return f"Diagnosis({self.verdict}: {', '.join(fault.kind for fault in self.recordings)})"
+        errors = f"error {self.error['nominal']:.3g} -> {self.error['final']:.3g} of the noise"
+        return f"Diagnosis({self.verdict}: {', '.join(self.effects) or 'no effect'}, {errors})"
+
     def as_json(self) -> dict[str, Any]:
         """Convert to plain data for `--json`."""
         return {

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 from picture_results import comparison, diagnosis, recordings
 
 from flexarm_env import Arm
 from flexarm_env.errors import InputError
+from flexarm_env.identify.inspect.fault import Fault
 
 RESULT = comparison(300, 0)
 SHOWN = {
@@ -36,6 +39,25 @@ def test_each_has_a_figure(kind):
     assert isinstance(figure, go.Figure)
     assert len(figure.data) >= 2
     assert figure.layout.xaxis.title.text or figure.layout.annotations
+
+
+@pytest.mark.parametrize(
+    ("kind", "line"),
+    [
+        ("arm", r"Arm\('thesis-fem', current drive, effects: .*coulomb.*\)"),
+        ("recording", r"Recording\('pulse': 300 samples, .*\)"),
+        ("comparison", r"Comparison\('thesis' against pulse, square, sweep: error 1.5 of the noise in windows, [0-9.e+]+ in free runs\)"),
+        ("diagnosis", r"Diagnosis\(effects: backlash, error [0-9.]+ -> [0-9.]+ of the noise\)"),
+    ],
+)
+def test_each_is_one_line_at_a_prompt(kind, line):
+    assert re.fullmatch(line, repr(SHOWN[kind][0]))
+
+
+def test_a_diagnosis_of_faulty_recordings_names_the_faults_at_a_prompt():
+    fault = Fault("run", "run.csv", "arm_angle", "sign", None, "", "the angle's sign is turned", "")
+    found = replace(diagnosis(), verdict="recordings", effects=[], recordings=[fault])
+    assert repr(found) == "Diagnosis(recordings: sign)"
 
 
 def test_names_are_no_markup():

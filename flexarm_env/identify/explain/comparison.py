@@ -106,3 +106,7 @@ class Comparison(Shown):
     closed_loop: float | None = None
     loop_rows: list[LoopRow] = field(default_factory=list)
     rate: float = 0.0
+
+    def __repr__(self) -> str:
+        errors = f"error {self.error:.3g} of the noise in windows, {self.free_run:.3g} in free runs"
+        return f"Comparison({self.arm.name!r} against {', '.join(r.name for r in self.replays)}: {errors})"
