@@ -146,8 +146,12 @@ class ThresholdCriteria:
         return all(left <= (1.0 - self.settings.selecting.least_total_gain) * before for before, left in pairs)
 
     def _worsens_whole_runs(self, score: Score) -> bool:
-        """Whether effects raise the error of whole runs: where torque noise is stated, nothing more can be said of it."""
-        return not self.judges_free_run and score.free_run > self.refitted.free_run
+        """Whether effects raise the excess of whole runs as much as they would have to lower it elsewhere.
+
+        Where torque noise is stated that is all they say: it alone moves the error of a real axis by some percent either way.
+        """
+        most = self.refitted.free_run_excess / (1.0 - self.settings.selecting.least_total_gain)
+        return not self.judges_free_run and score.free_run_excess > most
 
     def leaves_only_noise(self, score: Score) -> bool:
         """Whether windows end at the noise, in all signals together, and in each that the effects touch near it.
