@@ -46,7 +46,10 @@ def test_each_has_a_figure(kind):
     [
         ("arm", r"Arm\('thesis-fem', current drive, effects: .*coulomb.*\)"),
         ("recording", r"Recording\('pulse': 300 samples, .*\)"),
-        ("comparison", r"Comparison\('thesis' against pulse, square, sweep: error 1.5 of the noise in windows, 12 in free runs\)"),
+        (
+            "comparison",
+            r"Comparison\('thesis' against pulse, square, sweep: error 1.5 of the noise in windows, 12 in free runs\)",
+        ),
         ("diagnosis", r"Diagnosis\(effects: backlash, error [0-9.]+ -> [0-9.]+ of the noise\)"),
     ],
 )
