@@ -144,10 +144,11 @@ def test_effects_that_explain_only_together_are_added_one_by_one():
     made = nominal.with_effect("cable_stiffness", stiffness=0.2, rest_angle=0.0).with_effect("tach_filter", time=0.02)
     search, trace = begun(nominal, [simulate(made, experiment, seed=3, duration=6.0) for experiment in ("square", "sweep")])
     found = search.combine(trace, Progress())
-    assert sorted(found.effects) == ["cable_stiffness", "tach_filter"]
     assert [a.equivalent for a in found.accepted] == [(effect,) for effect in found.effects]
     assert found.model.score.windows < 1.05 < found.accepted[0].score.windows < trace.model.score.windows
     assert all(0.0 < found.ranking[name].gain <= 1.0 for name in found.effects)
+    # Stops that meet where the cable rests move the arm as it does, and give way to it, since it is simpler.
+    assert sorted(search.swap(found, Progress(), untried=True).effects) == ["cable_stiffness", "tach_filter"]
 
 
 @pytest.mark.slow

@@ -72,8 +72,7 @@ def compare_rivals(
     rank = criteria.rank(own.score, measure, calibrator.dataset)
     rivals.sort(key=rank)
     rivals[0] = _polish_near(calibrator, rivals[0], own)
-    level = criteria.equivalence_level(own.score, measure)
-    simpler = [m for m in rivals[1:] if is_of_fewer_numbers(m, own) and measure(m.score) <= level]
+    simpler = [m for m in rivals[1:] if is_of_fewer_numbers(m, own)]
     best = own
     for rival in (rivals[0], *simpler[:1]):
         if _takes_place(calibrator, criteria, rival, best, measure, rank):
