@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
-from scipy.signal import lfilter
 
 from flexarm_env.identify.settings import MotionFaults
 
@@ -104,6 +103,8 @@ def agreement_filtered(measured: Floats, modelled: Floats, cell: float, numbers:
 
 def filtered(values: Floats, cells: float) -> Floats:
     """Pass values (cells,) through a first-order filter whose time constant is a number of cells; gaps are bridged."""
+    from scipy.signal import lfilter  # half a second, which recordings whose signals agree need not wait for
+
     known = np.isfinite(values)
     place, share = np.arange(len(values)), 1.0 - np.exp(-1.0 / cells)
     bridged = np.interp(place, place[known], values[known]) if known.any() else values

@@ -81,7 +81,7 @@ def _search(evidence: Evidence) -> float:
     numbers = evidence.numbers
     gain = _middle_gain(evidence.run)
     starts = [(factor, 0.0) for factor in numbers.command_factors]
-    for start in [(1.0 / gain, 1.0), *starts] if gain else starts:
+    for start in [(1.0 / gain, 1.0), *starts] if gain > 0.0 else starts:
         factor, moved = start
         for _ in range(numbers.command_steps):
             gain = _middle_gain(evidence.replayer.free_run(factor))
