@@ -18,9 +18,9 @@ from flexarm_env.identify.select import fits
 from flexarm_env.identify.select.criteria import ThresholdCriteria
 from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.screen import Trial
-from flexarm_env.identify.select.search import Search, exchange
+from flexarm_env.identify.select.search import Search
 from flexarm_env.identify.select.starts import rivals_of
-from flexarm_env.identify.select.swap import RivalComparison
+from flexarm_env.identify.select.swap import RivalComparison, exchange
 from flexarm_env.identify.select.trace import Accepted, Trace, Tried
 from flexarm_env.identify.settings import SETTINGS
 from flexarm_env.recordings.recording import Recording

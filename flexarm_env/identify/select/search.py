@@ -19,7 +19,7 @@ from flexarm_env.identify.select.rivals import find_rivals
 from flexarm_env.identify.select.screen import Trial, control_of, screen
 from flexarm_env.identify.select.starts import candidates, shows_part_of_period
 from flexarm_env.identify.select.stepwise import extend_chain
-from flexarm_env.identify.select.swap import RivalComparison, compare_rivals
+from flexarm_env.identify.select.swap import compare_rivals, exchange
 from flexarm_env.identify.select.trace import Accepted, Trace, Tried, beside, gains, others_of, placed, share, with_last_score
 
 
@@ -350,22 +350,6 @@ class Search:
         near = [m for m in pairs if measure(m.score) <= level]
         worthwhile = [m for m in near if any(self.criteria.is_worthwhile(singles[0], m, by) for by in measures)]
         return worthwhile[0] if worthwhile else singles[0]
-
-
-def exchange(trace: Trace, place: int, comparison: RivalComparison) -> Trace:
-    """Put the effect that fits best in a place, with all that the recordings cannot tell from it."""
-    name, now, ranking = comparison.effect, trace.accepted[place], trace.ranking
-    gain = max((ranking[n].gain for n in (name, now.effect) if n in ranking), default=0.0)
-    models = {name: comparison.best, **comparison.alike}
-    tried = [Tried(n, ranking[n].gain if n in ranking else gain, m.calibration) for n, m in models.items()]
-    untried = [n for n in now.equivalent if n not in comparison.tried]
-    equivalent = (name, *comparison.alike, *untried)
-    entry = replace(now, equivalent=equivalent, beside=others_of([a.effect for a in trace.accepted], place))
-    if name == now.effect:
-        return trace.then("swap", accepted=placed(trace.accepted, place, entry), tried=tried)
-    tried.append(Tried(name, gain, comparison.best.calibration))
-    accepted = placed(trace.accepted, place, replace(entry, effect=name))
-    return trace.then("swap", comparison.best, with_last_score(accepted, comparison.best), tried)
 
 
 def _gains_of_screening(trials: Sequence[Trial]) -> list[Tried]:

@@ -12,7 +12,7 @@ from flexarm_env.identify.select.fits import fit_in_place
 from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.rivals import is_of_fewer_numbers, is_simpler_and_as_good, spread
 from flexarm_env.identify.select.starts import candidates, rivals_of, shows_part_of_period, simpler_beyond
-from flexarm_env.identify.select.trace import Accepted
+from flexarm_env.identify.select.trace import Accepted, Trace, Tried, others_of, placed, with_last_score
 
 
 @dataclass(frozen=True)
@@ -80,6 +80,22 @@ def compare_rivals(
     level = criteria.equivalence_level(best.score, measure)
     alike = {m.effects[0]: m for m in (own, *rivals) if m is not best and measure(m.score) <= level}
     return RivalComparison(best.effects[0], best, alike, tried, untried)
+
+
+def exchange(trace: Trace, place: int, comparison: RivalComparison) -> Trace:
+    """Put the effect that fits best in a place, with all that the recordings cannot tell from it."""
+    name, now, ranking = comparison.effect, trace.accepted[place], trace.ranking
+    gain = max((ranking[n].gain for n in (name, now.effect) if n in ranking), default=0.0)
+    models = {name: comparison.best, **comparison.alike}
+    tried = [Tried(n, ranking[n].gain if n in ranking else gain, m.calibration) for n, m in models.items()]
+    untried = [n for n in now.equivalent if n not in comparison.tried]
+    equivalent = (name, *comparison.alike, *untried)
+    entry = replace(now, equivalent=equivalent, beside=others_of([a.effect for a in trace.accepted], place))
+    if name == now.effect:
+        return trace.then("swap", accepted=placed(trace.accepted, place, entry), tried=tried)
+    tried.append(Tried(name, gain, comparison.best.calibration))
+    accepted = placed(trace.accepted, place, replace(entry, effect=name))
+    return trace.then("swap", comparison.best, with_last_score(accepted, comparison.best), tried)
 
 
 def _takes_place(
