@@ -131,7 +131,8 @@ def calibrated_size(evidence: Sequence[Evidence], fault: Fault) -> float:
 
     Args:
         evidence: on the recordings that have the fault.
-        fault: with a first estimate of its size, which is kept where the steps leave its neighbourhood.
+        fault: with a first estimate of its size, which is kept where the steps leave its neighbourhood, and where it changes
+            nothing that the model shows.
     """
     first = evidence[0].replayer
     free = free_parameters(first.arm, first.arm, first.dataset)
@@ -139,6 +140,8 @@ def calibrated_size(evidence: Sequence[Evidence], fault: Fault) -> float:
     constants = FitParameters(tuple(one for one in free if one.path not in SHARES and not one.path.startswith("sensors.")))
     sizing = Sizing(tuple(evidence), fault, constants)
     numbers, x, slopes = sizing.numbers, sizing.start, sizing.slopes()
+    if not slopes[:, :, -1].any():
+        return float(fault.value or 1.0)
     left = sizing.left(sizing.modelled(x), x[-1])
     close = numbers.lag_resolution if sizing.is_lag else numbers.command_close
     for _ in range(numbers.sizing_steps):

@@ -1,4 +1,4 @@
-"""Recordings of one signal alone: what starts and moves unlike the model ends in an answer."""
+"""Recordings that move unlike the model: one signal alone, a swing against it, a model that rests."""
 
 from __future__ import annotations
 
@@ -37,3 +37,10 @@ def test_any_signal_alone_of_a_real_rig_is_inspected(rig, measurements):
         for signal, readings in recording.signals.items():
             inspected = inspect_recordings(arm, [replace(recording, signals={signal: readings})])
             assert [facts.signal for facts in inspected.signals] == [signal]
+
+
+def test_a_late_speed_beside_commands_of_zero_keeps_the_lag_that_the_angle_shows(thesis, pulse):
+    """The model rests there: it says nothing of a lag."""
+    speed = np.roll(pulse.signals["motor_speed"], 300)
+    late = replace(pulse, command=np.zeros_like(pulse.command), signals=pulse.signals | {"motor_speed": speed})
+    assert "clock" in {fault.kind for fault in inspect_recordings(thesis, [late]).faults}
