@@ -80,7 +80,7 @@ RIGS: tuple[Rig, ...] = (
         training=(Record("dfki_pendulum/ddp.csv"),),
         held_out=(Record("dfki_pendulum/pd_identification.csv"),),  # no constants give the torque of energy_shaping
         metric=CommandError(Recipe(angle=20.0, both=5.0), "Nm"),
-        published=(Published("identification of the publisher, by this measure", 0.584),),
+        published=(Published("identification of the publisher, by this measure", 0.558),),
     ),
     Rig(
         name="multiarm",
