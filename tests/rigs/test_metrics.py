@@ -68,7 +68,7 @@ def test_the_current_error_of_ur10e_is_that_of_a_regression(measurements):
 
 
 def test_the_published_constants_of_the_dfki_pendulum_give_the_figure_beside_them(measurements):
-    """J 0.06259, m c 0.1022, viscous 0.04707, Coulomb 0.289 where it saturates, offset −0.07586, by the sign that suits it better."""
+    """J 0.06259, m c 0.1022, viscous 0.04707, Coulomb 0.289 where it saturates, offset −0.07586 by its better sign."""
     rig = next(rig for rig in RIGS if rig.name == "dfki")
     arm = Arm.load(rig.arm)
     arm = arm.with_values({"link.inertia": 0.06259, "link.mass": 0.1022 / arm.value("link.centre")})

@@ -23,7 +23,7 @@ def stands_at(end: int, signal: str, series: dict[str, Series], numbers: Inspect
     if count < numbers.fewest_at_rail:
         return False
     follow = count - int(at_end.sum())
-    repeated = _evidence(follow, count, one.most_repeats(values < values.max(), numbers)) > numbers.evidence
+    usual = one.most_repeats(values < values.max(), numbers)
     standing = one.rows[values == values.max()]
     others = partners(signal, series)
     if one.flicker > numbers.flickers:
@@ -32,7 +32,9 @@ def stands_at(end: int, signal: str, series: dict[str, Series], numbers: Inspect
         if still and (bool(others) or near_zero):
             return False
         wide = one.noise > numbers.wide_noise * one.step
+        repeated = _evidence(follow, count, max(usual, one.repeats_at_rest)) > numbers.evidence
         return repeated or (_piles_up(values, one, count, numbers) and (wide or _is_cut(values, one, numbers)))
+    repeated = _evidence(follow, count, usual) > numbers.evidence
     return repeated and _is_cut(values, one, numbers) and not _rests(one, values.max(), standing, others, numbers)
 
 
@@ -56,7 +58,7 @@ def _evidence(follow: int, count: int, usual: float) -> float:
 
 
 def _is_cut(values: Floats, series: Series, numbers: Inspecting) -> bool:
-    """Whether the signal runs into its extreme at a slope, where a motion that ends there comes in slowly.
+    """Whether the signal would go on beyond its extreme, at a slope, where a motion that ends there slows down to it.
 
     A last digit that flickers at rest leaves the extreme by one step, and does not arrive there anew.
     """
@@ -66,8 +68,12 @@ def _is_cut(values: Floats, series: Series, numbers: Inspecting) -> bool:
     stays = np.cumsum(away)
     arrivals = stands[np.r_[True, np.diff(stays[stands]) > 0]] if stands.size else stands
     before = np.maximum(arrivals - numbers.least_run, 0)
-    slopes = (values[arrivals] - values[before]) / np.maximum(arrivals - before, 1)
-    return bool(slopes.size) and float(np.median(slopes)) > numbers.cut_slope * series.step
+    earlier = np.maximum(before - numbers.least_run, 0)
+    slopes, earlier_slopes = (
+        (values[last] - values[first]) / np.maximum(last - first, 1) for first, last in ((before, arrivals), (earlier, before))
+    )
+    ahead = np.minimum(slopes, 2.0 * slopes - earlier_slopes)
+    return bool(ahead.size) and float(np.median(ahead)) > numbers.cut_slope * series.step
 
 
 def _rests(series: Series, level: float, standing: Integers, others: Sequence[Series], numbers: Inspecting) -> bool:

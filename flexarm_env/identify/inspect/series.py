@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -49,6 +50,12 @@ class Series:
     def flicker(self) -> float:
         """Share of readings at which the signal turns back at once: two thirds for white noise, next to none for a motion."""
         return float(np.mean(self.changes[1:] * self.changes[:-1] < 0.0)) if len(self) > 2 else 0.0
+
+    @property
+    def repeats_at_rest(self) -> float:
+        """Share of readings that repeat where noise is all that moves them, in the middle of a step: the largest at rest."""
+        own = math.sqrt(max(self.noise**2 - self.step**2 / 12.0, 0.0))  # the rest of the noise is that of rounding
+        return math.erf(0.5 * self.step / (math.sqrt(2.0) * own)) if own else 1.0
 
     def runs(self) -> tuple[Integers, Integers]:
         """Find stretches of equal readings without a gap; return the index of the first reading of each, and their lengths."""

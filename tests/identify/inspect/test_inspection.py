@@ -72,6 +72,17 @@ def test_a_last_digit_that_flickers_at_rest_is_no_rail(seed):
     assert [one for one in inspect_recordings(Arm.load("cu-rigid"), [run]).faults if one.kind == "rail"] == []
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_a_fine_encoder_whose_hub_slows_down_to_its_largest_angle_is_no_rail(seed):
+    """Friction stops it there for 80 ms. In steps of 1e-6 rad even the last samples before are many steps apart."""
+    time = np.arange(0.0, 3.0, 0.001)
+    sets_out, slows, leaves = np.maximum(time - 0.9, 0.0), np.minimum(time - 1.5, 0.0), np.maximum(time - 1.58, 0.0)
+    angle = np.where(time < 1.2, 0.0400005 + 2.0 * sets_out**2, 0.39999975 - 2.0 * slows**2 - 5.0 * leaves**2)
+    reading = np.round(angle / 1e-6 + 0.2 * np.random.default_rng(seed).standard_normal(len(time))) * 1e-6
+    run = Recording.from_arrays("run", time, "voltage", np.sin(time), {"arm_angle": reading})
+    assert [one for one in inspect_recordings(Arm.load("cu-rigid"), [run]).faults if one.kind == "rail"] == []
+
+
 def test_a_motor_that_only_turns_forward_rests_at_zero_and_not_at_a_rail():
     time = np.arange(0.0, 4.0, 0.002)
     speed = np.round(np.maximum(20.0 * np.sin(2.0 * time), 0.0))
