@@ -32,7 +32,7 @@ def stands_at(end: int, signal: str, series: dict[str, Series], numbers: Inspect
         if still and (bool(others) or near_zero):
             return False
         wide = one.noise > numbers.wide_noise * one.step
-        repeated = _evidence(follow, count, max(usual, one.repeats_at_rest)) > numbers.evidence
+        repeated = _evidence(follow, count, max(usual, one.repeats_at_rest(numbers))) > numbers.evidence
         return repeated or (_piles_up(values, one, count, numbers) and (wide or _is_cut(values, one, numbers)))
     repeated = _evidence(follow, count, usual) > numbers.evidence
     return repeated and _is_cut(values, one, numbers) and not _rests(one, values.max(), standing, others, numbers)

@@ -51,10 +51,9 @@ class Series:
         """Share of readings at which the signal turns back at once: two thirds for white noise, next to none for a motion."""
         return float(np.mean(self.changes[1:] * self.changes[:-1] < 0.0)) if len(self) > 2 else 0.0
 
-    @property
-    def repeats_at_rest(self) -> float:
+    def repeats_at_rest(self, numbers: Inspecting) -> float:
         """Share of readings that repeat where noise is all that moves them, in the middle of a step: the largest at rest."""
-        own = math.sqrt(max(self.noise**2 - self.step**2 / 12.0, 0.0))  # the rest of the noise is that of rounding
+        own = math.sqrt(max(self.noise**2 - (numbers.from_rounding * self.step) ** 2, 0.0))
         return math.erf(0.5 * self.step / (math.sqrt(2.0) * own)) if own else 1.0
 
     def runs(self) -> tuple[Integers, Integers]:
