@@ -18,13 +18,13 @@ import flexarm_env
 from flexarm_env import InputError
 from flexarm_env.identify.workers import Workers
 
-PROGRAM = """
+PROGRAM = r"""
 import os, sys, time
 import numpy as np
 from flexarm_env.identify.workers import Workers
 
 def work(numbers):
-    print(os.getpid(), flush=True)
+    os.write(1, f"{os.getpid()}\n".encode())
     time.sleep(600)
 
 list(Workers(3).map([(work, (np.zeros(10**6),))] * 2))
