@@ -20,17 +20,21 @@ NUMBERS = {"constant_torque": 1, "asymmetric_coulomb": 1, "cable_stiffness": 2, 
 BASE = 3  # numbers of the constants
 
 
-def model(effect: str, error: float, beside: tuple[str, ...] = ()) -> Model:
+def model(effect: str, error: float | Score, beside: tuple[str, ...] = ()) -> Model:
     """Of the thesis's arm with an effect, beside others that a model has."""
-    arm = Arm.load("thesis")
+    arm, score = Arm.load("thesis"), error if isinstance(error, Score) else Score(error, error)
     for name in (effect, *beside):
         arm = arm.with_effect(name)
     free = SimpleNamespace(arm=arm, parameters=[SimpleNamespace(path=f"hub.{i}") for i in range(BASE + NUMBERS[effect])])
-    return Model((effect, *beside), free, Score(error, error), Score(error, error))
+    return Model((effect, *beside), free, score, score)
 
 
 def compared(
-    monkeypatch: pytest.MonkeyPatch, effect: str, error: float, rivals: dict[str, float | None], equivalent: tuple[str, ...] = ()
+    monkeypatch: pytest.MonkeyPatch,
+    effect: str,
+    error: float | Score,
+    rivals: dict[str, float | Score | None],
+    equivalent: tuple[str, ...] = (),
 ) -> swap.RivalComparison:
     """An effect beside a limit of the command's rate, compared with rivals in its place, by the errors that they leave."""
     now = model(effect, error, beside=("rate_limit",))
@@ -74,3 +78,10 @@ def test_of_exact_twins_the_law_of_fewer_quantities_has_the_place_whatever_stand
     found = compared(monkeypatch, first, 1.05, {other: 1.05})
     assert found.effect == "constant_torque"
     assert set(found.alike) == {"asymmetric_coulomb"}
+
+
+@pytest.mark.parametrize(("windows", "first"), [(18.0, "constant_torque"), (15.0, "cable_stiffness")])
+def test_far_off_a_rival_of_more_numbers_is_better_in_windows_too(monkeypatch, windows, first):
+    """A cable imitates a constant torque in whole runs: a student's arm, whose errors in windows differ by 1 %."""
+    found = compared(monkeypatch, "constant_torque", Score(18.2, 71.1), {"cable_stiffness": Score(windows, 61.3)})
+    assert found.effect == first

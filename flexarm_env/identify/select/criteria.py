@@ -208,10 +208,14 @@ class ThresholdCriteria:
         return max(found.score.windows, found.fitted_score.windows) > self.settings.errors.at_noise
 
     def replaces(self, rival: Model, now: Model, rank: Callable[[Model], float]) -> bool:
-        """Whether the rival ranks first; by a share of the excess, where the model does not come near the noise."""
-        near = now.score.windows < self.settings.errors.close
-        least = 0.0 if near else self.settings.selecting.least_gain
-        return rank(rival) < (1.0 - least) * rank(now)
+        """Whether the rival ranks first; by a share of the excess, where the model does not come near the noise.
+
+        There a rival of more numbers lowers the excess in windows as well: it may imitate another effect in whole runs alone.
+        """
+        if now.score.windows < self.settings.errors.close:
+            return rank(rival) < rank(now)
+        most, has_more = 1.0 - self.settings.selecting.least_gain, now.numbers < rival.numbers
+        return rank(rival) < most * rank(now) and (not has_more or rival.score.excess < most * now.score.excess)
 
     def contender_difference(self, removed: float) -> float:
         """Compute a share of the removed excess."""

@@ -40,6 +40,11 @@ class Model:
         return sizes_at_bound(self.arm, self.calibration.parameters, self.effects)
 
     @property
+    def numbers(self) -> int:
+        """Number of calibrated numbers, constants and those of effects."""
+        return len(self.calibration.parameters)
+
+    @property
     def quantities(self) -> int:
         """Number of quantities, such as angle, speed and time, on which the laws of its effects depend."""
         known = self.arm.known
@@ -57,7 +62,7 @@ class Model:
         """
         fitted, held = dataset.readings(held_out=False), dataset.readings(held_out=True)
         errors = fitted * self.fitted_score.windows**2 + held * self.score.windows**2
-        return errors + len(self.calibration.parameters) * math.log(fitted + held)
+        return errors + self.numbers * math.log(fitted + held)
 
 
 def sizes_at_bound(arm: Arm, parameters: FitParameters, effects: Sequence[str]) -> bool:

@@ -87,18 +87,12 @@ def is_simpler_and_as_good(model: Model, other: Model, most: float, same: float)
         most: ratio of the errors up to which fewer numbers are as good.
         same: ratio up to which two models move alike, so that nothing but their laws tells them apart.
     """
-    numbers, others = (len(m.calibration.parameters) for m in (model, other))
-    if numbers == others:
+    if model.numbers == other.numbers:
         return model.quantities < other.quantities and model.error_over(other) <= same
-    return numbers < others and model.error_over(other) <= most
-
-
-def is_of_fewer_numbers(model: Model, other: Model) -> bool:
-    """Whether a model has fewer calibrated numbers than another."""
-    return len(model.calibration.parameters) < len(other.calibration.parameters)
+    return model.numbers < other.numbers and model.error_over(other) <= most
 
 
 def _simplest(ranked: Sequence[Model], most: float, same: float) -> Model:
     """Choose the simplest of the models that are as good as the first one."""
     every = [ranked[0], *(m for m in ranked if is_simpler_and_as_good(m, ranked[0], most, same))]
-    return min(every, key=lambda m: (len(m.calibration.parameters), m.quantities))
+    return min(every, key=lambda m: (m.numbers, m.quantities))

@@ -10,7 +10,7 @@ from flexarm_env.identify.progress import Progress
 from flexarm_env.identify.select.criteria import Criteria, Measure
 from flexarm_env.identify.select.fits import fit_in_place
 from flexarm_env.identify.select.model import Model, judge
-from flexarm_env.identify.select.rivals import is_of_fewer_numbers, is_simpler_and_as_good, spread
+from flexarm_env.identify.select.rivals import is_simpler_and_as_good, spread
 from flexarm_env.identify.select.starts import candidates, rivals_of, shows_part_of_period, simpler_beyond
 from flexarm_env.identify.select.trace import Accepted, Trace, Tried, others_of, placed, with_last_score
 
@@ -72,7 +72,7 @@ def compare_rivals(
     rank = criteria.rank(own.score, measure, calibrator.dataset)
     rivals.sort(key=rank)
     rivals[0] = _polish_near(calibrator, rivals[0], own)
-    simpler = [m for m in rivals[1:] if is_of_fewer_numbers(m, own)]
+    simpler = [m for m in rivals[1:] if m.numbers < own.numbers]
     best = own
     for rival in (rivals[0], *simpler[:1]):
         if _takes_place(calibrator, criteria, rival, best, measure, rank):
