@@ -134,14 +134,14 @@ def calibrated_size(evidence: Sequence[Evidence], fault: Fault) -> float:
         fault: with a first estimate of its size, which is kept where the steps leave its neighbourhood, and where it changes
             nothing that the model shows.
     """
-    first = evidence[0].replayer
-    free = free_parameters(first.arm, first.arm, first.dataset)
+    replayer, first_estimate = evidence[0].replayer, float(fault.value or 1.0)
+    free = free_parameters(replayer.arm, replayer.arm, replayer.dataset)
     # Gains of sensors would take the place of a factor.
     constants = FitParameters(tuple(one for one in free if one.path not in SHARES and not one.path.startswith("sensors.")))
     sizing = Sizing(tuple(evidence), fault, constants)
     numbers, x, slopes = sizing.numbers, sizing.start, sizing.slopes()
     if not slopes[:, :, -1].any():
-        return float(fault.value or 1.0)
+        return first_estimate
     left = sizing.left(sizing.modelled(x), x[-1])
     close = numbers.lag_resolution if sizing.is_lag else numbers.command_close
     for _ in range(numbers.sizing_steps):
@@ -150,7 +150,7 @@ def calibrated_size(evidence: Sequence[Evidence], fault: Fault) -> float:
         if abs(x[-1] - before[-1]) < close:
             break
     far = abs(x[-1] - sizing.start[-1]) > (numbers.same_lag if sizing.is_lag else math.log(numbers.least_factor))
-    return float(fault.value or 1.0) if far else sizing.value(x)
+    return first_estimate if far else sizing.value(x)
 
 
 def _step(sizing: Sizing, x: Floats, left: Floats, slopes: Floats) -> tuple[Floats, Floats]:
