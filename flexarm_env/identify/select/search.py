@@ -249,7 +249,9 @@ class Search:
             for place, other in enumerate(kept):
                 rest = trace.model.arm.without_effect(effect).without_effect(other.effect)
                 names = [n for n in other.equivalent[1:] if n not in trace.effects and n in candidates(rest)]
-                models = fit_in_place(self.calibrator, rest, names, Progress(), thorough=True)
+                models = fit_in_place(
+                    self.calibrator, rest, names, Progress(), thorough=True, rivals_of_noise=self._is_near(trace.model)
+                )
                 better = [m for m in models if m and not m.at_bound and self._is_useless_beside(m, trace.model)]
                 if better:
                     best = min(better, key=lambda m: m.score.windows)
@@ -262,9 +264,12 @@ class Search:
     def _without(self, found: Model, effect: str) -> Model | None:
         """Calibrate a model without one of its effects; None where that cannot leave only noise, and the model does."""
         calibrator, arm = self.calibrator, found.arm.without_effect(effect)
-        is_near = found.score.windows <= calibrator.settings.errors.explained
-        calibration = calibrator.calibrate_rival(arm) if is_near else calibrator.calibrate(arm)
+        calibration = calibrator.calibrate_rival(arm) if self._is_near(found) else calibrator.calibrate(arm)
         return None if calibration is None else judge((), calibration, calibrator.dataset)
+
+    def _is_near(self, found: Model) -> bool:
+        """Whether a model leaves hardly more than noise, so that one that is as good does, too."""
+        return found.score.windows <= self.calibrator.settings.errors.explained
 
     def _is_useless_beside(self, without: Model, found: Model) -> bool:
         """Whether a model without an effect is as good as one with it, in windows too where whole runs are what counts."""
