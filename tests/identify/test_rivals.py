@@ -23,9 +23,12 @@ def model(effect: str, error: float) -> Model:
     )
 
 
-def named(monkeypatch: pytest.MonkeyPatch, first: dict[str, float], again: dict[str, float]) -> tuple[str, ...]:
+def named(
+    monkeypatch: pytest.MonkeyPatch, first: dict[str, float], again: dict[str, float], calibrated: int = 2
+) -> tuple[str, ...]:
     """The effects that the recordings do not tell apart, by the errors of their first calibrations and of their second ones."""
-    monkeypatch.setattr(rivals, "fit_models", lambda *_, **__: [model(name, error) for name, error in again.items()])
+    second: list[Model] = []
+    monkeypatch.setattr(rivals, "fit_models", lambda *_, **__: second.extend(model(*one) for one in again.items()) or second)
     settings = Settings()
     before = model("cable_stiffness", 14.0)
     criteria = ThresholdCriteria(before.score, before.score, True, settings)
@@ -35,6 +38,7 @@ def named(monkeypatch: pytest.MonkeyPatch, first: dict[str, float], again: dict[
     models = [model(name, error) for name, error in first.items()]
     winner = min(models, key=lambda m: m.score.windows)
     found = rivals.find_rivals(calibrator, criteria, before, winner, models, lambda score: score.excess)
+    assert len(second) == calibrated
     return tuple(m.effects[0] for m in found.models)
 
 
@@ -56,3 +60,14 @@ def test_a_simple_model_that_leaves_more_than_calibrations_differ_by_is_not_name
 def test_the_simplest_of_equals_is_named_though_calibrations_agree(monkeypatch) -> None:
     errors = {"cable_stiffness": 1.0015, "end_stop": 1.000}
     assert named(monkeypatch, errors, errors) == ("cable_stiffness", "end_stop")
+
+
+def test_no_rival_of_more_numbers_is_calibrated_again_beside_a_model_that_leaves_only_noise(monkeypatch) -> None:
+    for left, names in ((1.001, ("cable_stiffness", "end_stop")), (2.0, ("cable_stiffness",))):
+        errors = {"cable_stiffness": 1.000, "end_stop": left}
+        assert named(monkeypatch, errors, errors, calibrated=0) == names
+
+
+@pytest.mark.parametrize("errors", [{"cable_stiffness": 1.020, "end_stop": 1.021}, {"cable_stiffness": 1.001, "end_stop": 1.000}])
+def test_beside_a_simpler_rival_or_one_that_could_leave_less_every_model_is_calibrated_again(monkeypatch, errors) -> None:
+    named(monkeypatch, errors, errors, calibrated=2)

@@ -36,7 +36,8 @@ def find_rivals(
 
     A calibration that began with biased constants leaves more than the difference between near rivals, and so does one that
     ended where constants compensate each other: each is calibrated by both schedules, and ranked by what it then leaves.
-    Where no time is left for another, all near rivals are taken as undecided.
+    A winner that leaves only noise needs none of that beside rivals of more numbers: none can stand before it. Where no time is
+    left for another calibration, all near rivals are taken as undecided.
 
     Args:
         calibrator: of the recordings.
@@ -51,6 +52,10 @@ def find_rivals(
     first = [m for m in models if m is winner or measure(m.score) <= most]
     if len(first) == 1:
         return Rivals((winner,), measure)
+    if not criteria.leaves_room(winner) and all(m is winner or m.numbers > winner.numbers for m in first):
+        level = criteria.equivalence_level(winner.score, measure)
+        equals = [m for m in first if m is not winner and measure(m.score) <= level]
+        return Rivals((winner, *sorted(equals, key=lambda m: measure(m.score))), measure)
     arms = [calibrator.nominal_with_effects_of(m.arm) for m in first]
     again = fit_models(calibrator, [m.effects for m in first], arms, Progress(), thorough=True)
     if len(again) < len(first):
