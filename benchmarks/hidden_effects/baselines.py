@@ -54,7 +54,7 @@ def best_fit_wins(stepped: dict[str, Any]) -> dict[str, Any]:
 def _best(calibrator: Calibrator, found: Calibration) -> tuple[str, Calibration] | None:
     """Find the effect with the best fit when added, and the arm refitted with it."""
     base = baseline(found, calibrator.dataset)
-    trials = [trial for name in candidates(found.arm) for trial in try_effect([base], name)]
+    trials = [trial for name in candidates(found.arm, calibrator.dataset) for trial in try_effect([base], name)]
     if not trials:
         return None
     best = min(trials, key=lambda trial: trial.cost)

@@ -86,7 +86,7 @@ def test_effects_explain_what_they_do_at_the_thesis_s_size(arm, resized: Callabl
     for model, hidden in ((arm, machine), (resized(arm), resized(machine))):
         nominal, data = prepare(model, [simulate(hidden, kind, duration=3.0, rate=200.0, seed=3) for kind in ("square", "pulse")])
         base = baseline(Calibrator(nominal, data).uncalibrated(nominal), data)
-        names = [n for n in candidates(nominal) if model.known[n].fitted]
+        names = [n for n in candidates(nominal, data) if model.known[n].fitted]
         starts = {n: [nominal.with_effect(n, **s) for s in starts_of(nominal, n, data)] for n in names}
         found.append((starts, {n: sum(s.explained for s in signatures(base, n)) for n in names}))
     (starts, explained), (other_starts, other_explained) = found

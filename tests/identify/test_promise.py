@@ -23,7 +23,7 @@ def promised(machine: Arm, model: Arm, *names: str) -> dict[str, float]:
     """Gain of each effect, most promising first, over the cost of the model as given."""
     nominal, data = seen_by(machine, model)
     cost = likeliest(nominal, data, first_disturbances(nominal, data)).cost
-    return {p.effect: p.gain / cost for p in weighed(nominal, data, list(names) or candidates(nominal))}
+    return {p.effect: p.gain / cost for p in weighed(nominal, data, list(names) or candidates(nominal, data))}
 
 
 @pytest.fixture(scope="module")

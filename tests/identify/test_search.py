@@ -62,7 +62,7 @@ def test_an_effect_that_began_too_large_begins_again(monkeypatch):
     nominal = Arm.load("thesis-fem")
     made = nominal.with_effect("backlash", gap=0.0007).with_values({"hub.inertia": 1.2 * nominal.value("hub.inertia")})
     arm, data = prepare(nominal, [simulate(made, "pulse", seed=1, duration=5.0)])
-    monkeypatch.setattr(fits, "candidates", lambda arm: ["backlash", "current_lag"])
+    monkeypatch.setattr(fits, "candidates", lambda arm, dataset: ["backlash", "current_lag"])
     calibrator = Calibrator(arm, data)
     base = calibrator.calibrate_constants()
     found = fits.fit_with_all_constants(calibrator, base, [Trial("", base.arm, 0.0, 0.0)], [], Progress())
@@ -132,10 +132,11 @@ def test_the_trace_as_plain_data_tells_each_step_from_the_one_before():
 
 
 def test_an_effect_that_another_one_modifies_has_no_rivals():
-    arm = Arm.load("thesis")
-    assert "dead_zone" in rivals_of("brush_drop", arm)
+    nominal = Arm.load("thesis")
+    arm, dataset = prepare(nominal, [simulate(nominal, "square", duration=2.0)])
+    assert "dead_zone" in rivals_of("brush_drop", arm, dataset)
     assert "stiction" in arm.effects
-    assert rivals_of("coulomb", arm.without_effect("coulomb")) == []
+    assert rivals_of("coulomb", arm.without_effect("coulomb"), dataset) == []
 
 
 @pytest.mark.slow

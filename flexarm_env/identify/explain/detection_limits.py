@@ -56,7 +56,7 @@ def detection_limits(calibrator: Calibrator, found: Calibration) -> dict[str, De
         base = baseline(found, dataset, (dataset.settings.process_noise.detection,))
     begun = error_measure(found.arm).states_before(found.arm, dataset)
     without = _Windows.of(found.arm, dataset, begun)
-    names = sizeable(found.arm)
+    names = sizeable(found.arm, dataset)
     limits = calibrator.workers.map([(_limit, (base, name, without, dataset)) for name in names])
     return {name: limit for name, limit in zip(names, limits, strict=True) if limit}
 

@@ -78,7 +78,7 @@ def excitation_of(arm: Arm, dataset: Dataset, progress: Progress) -> Excitation:
     constants.at(0.0, "constants")
     base = _baseline(arm, dataset)
     rise_of = _rise_against(arm, dataset)
-    names = sizeable(arm)
+    names = sizeable(arm, dataset)
     found = []
     for number, name in enumerate(names):
         effects.at(number / len(names), name)

@@ -10,6 +10,7 @@ import numpy as np
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.objective import ObserverBank
+from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.select.signatures import Baseline
 from flexarm_env.identify.select.starts import candidates, sized, some_starts_of
 from flexarm_env.identify.settings import DetectionLimits
@@ -103,12 +104,12 @@ class EffectSize:
         return abs(math.log(self.multiple / other.multiple))
 
 
-def sizeable(arm: Arm) -> list[str]:
+def sizeable(arm: Arm, dataset: Dataset) -> list[str]:
     """List the effects that an arm could lack and that have a size."""
     known = arm.known
     return [
         name
-        for name in candidates(arm)
+        for name in candidates(arm, dataset)
         if known[name].fitted and any(p.null is not None for p in known[name].parameters.values())
     ]
 

@@ -98,7 +98,7 @@ def fit_with_all_constants(
     """
     numbers = calibrator.settings.proposing
     briefly, smaller, full = progress.split(5, 1, 4)
-    names = [n for n in candidates(found.arm) if found.arm.known[n].fitted and n not in tried]
+    names = [n for n in candidates(found.arm, calibrator.dataset) if found.arm.known[n].fitted and n not in tried]
     reset = calibrator.reset_biased_constants(found, numbers.biased)
     starts = [(n, start) for n in names for start in _starts(calibrator, n, reset, trials)]
     fits = _fit_briefly(calibrator, [("", reset), *((n, reset.with_effect(n, **start)) for n, start in starts)], briefly)

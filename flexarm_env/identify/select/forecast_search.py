@@ -152,7 +152,7 @@ class ForecastSearch:
         for one, stage in zip(level, progress.split(*[1] * len(level)), strict=True):
             if self._is_late:
                 break
-            names = candidates(one.arm)
+            names = candidates(one.arm, self.calibrator.dataset)
             stage.at(0.0, f"weighing {len(names)} effects{_beside(one)}")
             found = promises(one.prediction, one.parameters, names)
             wanted = self._finalists(one, found)
@@ -170,7 +170,7 @@ class ForecastSearch:
         """
         numbers = self.numbers
         near = [p for p in found[numbers.finalists :] if p.gain >= numbers.near_promise * found[0].gain]
-        rivals = set(rivals_of(found[0].effect, one.arm)) if found else set()
+        rivals = set(rivals_of(found[0].effect, one.arm, self.calibrator.dataset)) if found else set()
         near = sorted(near, key=lambda p: p.effect not in rivals)
         chosen = [*found[: numbers.finalists], *near][: numbers.most_finalists]
         return chosen + [p for p in found if one.effects and p.effect == one.arm.known.pairing and p not in chosen]

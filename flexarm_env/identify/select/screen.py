@@ -50,7 +50,7 @@ class Screening:
 
 def screen(calibrator: Calibrator, starts: Sequence[Calibration], progress: Progress, briefly: bool = False) -> Screening:
     """Try every effect from some calibrations, and none, as long as there is time; briefly where only noise is left."""
-    names, number = candidates(starts[0].arm), 0
+    names, number = candidates(starts[0].arm, calibrator.dataset), 0
     with calibrator.workers.threads():
         bases = baselines(starts, calibrator.dataset)
         trials = [attempt(bases[0], None)]

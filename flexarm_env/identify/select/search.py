@@ -248,7 +248,8 @@ class Search:
                 continue
             for place, other in enumerate(kept):
                 rest = trace.model.arm.without_effect(effect).without_effect(other.effect)
-                names = [n for n in other.equivalent[1:] if n not in trace.effects and n in candidates(rest)]
+                lacking = candidates(rest, self.calibrator.dataset)
+                names = [n for n in other.equivalent[1:] if n not in trace.effects and n in lacking]
                 models = fit_in_place(
                     self.calibrator, rest, names, Progress(), thorough=True, rivals_of_noise=self._is_near(trace.model)
                 )

@@ -10,20 +10,22 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.replay.dataset import Dataset
+from flexarm_env.identify.select.followed import follows_sine
 from flexarm_env.identify.settings import Screening
 
 #: Values of an effect, and the change (rows,) of the errors that they make and no constant could.
 Change = tuple[dict[str, float], NDArray[np.float64]]
 
 
-def candidates(arm: Arm) -> list[str]:
-    """List the effects that an arm could lack."""
+def candidates(arm: Arm, dataset: Dataset) -> list[str]:
+    """List the effects that an arm could lack, and that readings can follow from some start."""
     elements = arm.constants.get("beam", {}).get("elements", 0.0)
     lacking = [n for n, e in arm.known.items() if n not in arm.effects and arm.can_have(n) and elements <= e.most_elements]
-    return [n for n in lacking if not arm.known[n].modifies or arm.known[n].modifies in arm.effects]
+    whole = [n for n in lacking if not arm.known[n].modifies or arm.known[n].modifies in arm.effects]
+    return [n for n in whole if starts_of(arm, n, dataset)]
 
 
-def rivals_of(effect: str, without: Arm) -> list[str]:
+def rivals_of(effect: str, without: Arm, dataset: Dataset) -> list[str]:
     """List the effects that an effect is confused with, of those that an arm without it lacks.
 
     There are none for one that another effect of the arm modifies, which could not stand without it.
@@ -31,14 +33,14 @@ def rivals_of(effect: str, without: Arm) -> list[str]:
     known = without.known
     if any(known[n].modifies == effect for n in without.effects):
         return []
-    return [n for n in candidates(without) if n in known[effect].confused_with or effect in known[n].confused_with]
+    return [n for n in candidates(without, dataset) if n in known[effect].confused_with or effect in known[n].confused_with]
 
 
-def simpler_beyond(effect: str, without: Arm) -> list[str]:
+def simpler_beyond(effect: str, without: Arm, dataset: Dataset) -> list[str]:
     """List the effects of fewer numbers with which the rivals of an effect are confused, and it is not."""
-    known, near = without.known, rivals_of(effect, without)
-    beyond = [n for n in candidates(without) if n not in (effect, *near) and any(n in rivals_of(r, without) for r in near)]
-    return [n for n in beyond if len(known[n].parameters) < len(known[effect].parameters)]
+    known, near = without.known, rivals_of(effect, without, dataset)
+    beyond = {n for r in near for n in rivals_of(r, without, dataset)} - {effect, *near}
+    return [n for n in candidates(without, dataset) if n in beyond and len(known[n].parameters) < len(known[effect].parameters)]
 
 
 def shows_part_of_period(arm: Arm, effect: str, dataset: Dataset) -> bool:
@@ -54,14 +56,18 @@ def shows_part_of_period(arm: Arm, effect: str, dataset: Dataset) -> bool:
 
 
 def starts_of(arm: Arm, effect: str, dataset: Dataset) -> list[dict[str, float]]:
-    """List the values from which an effect is tried, in the scales of the data; for offsets, one start for each sensor."""
+    """List the values from which an effect is tried, in the scales of the data; for offsets, one start for each sensor.
+
+    A sine of the angle that the readings outrun is tried from none: what they show of it is an alias.
+    """
     known = arm.known[effect]
     if known.per_sensor:
         noise = dict(zip(dataset.signals, dataset.noise, strict=True))
         sizes = {signal: min(float(deviation), known.parameters[signal].high) for signal, deviation in noise.items()}
         sensors = [{key: (sizes[key] if key == signal else 0.0) for key in known.parameters} for signal in sizes]
         return [start for _ in known.starts() for start in sensors]
-    return [_scaled(arm, effect, start, dataset) for start in known.starts()]
+    every = [_scaled(arm, effect, start, dataset) for start in known.starts()]
+    return [start for start in every if follows_sine(arm, known.cycles_per_turn(start), dataset)]
 
 
 def some_starts_of(arm: Arm, effect: str, dataset: Dataset) -> list[dict[str, float]]:

@@ -54,12 +54,12 @@ def compare_rivals(
         progress: of these calibrations.
         compared: rivals that are left out, as they were compared before.
     """
-    effect = accepted.effect
+    effect, dataset = accepted.effect, calibrator.dataset
     without = now.arm.without_effect(effect)
-    smooth = shows_part_of_period(now.arm, effect, calibrator.dataset)
-    every = rivals_of(effect, without) + (simpler_beyond(effect, without) if smooth else [])
+    smooth = shows_part_of_period(now.arm, effect, dataset)
+    every = rivals_of(effect, without, dataset) + (simpler_beyond(effect, without, dataset) if smooth else [])
     equivalent = set(accepted.equivalent[1:]) - set(every)
-    every += [name for name in candidates(without) if name in equivalent]
+    every += [name for name in candidates(without, dataset) if name in equivalent]
     names = [name for name in every if name not in compared]
     near = now.score.windows <= calibrator.settings.errors.explained
     fitted = fit_in_place(calibrator, without, names, progress, thorough=smooth, rivals_of_noise=near)
@@ -69,7 +69,7 @@ def compare_rivals(
         return RivalComparison(effect, now, {}, tried, untried)
     own = replace(now, effects=(effect,))
     measure = criteria.measure([own.score, *(m.score for m in rivals)])
-    rank = criteria.rank(own.score, measure, calibrator.dataset)
+    rank = criteria.rank(own.score, measure, dataset)
     rivals.sort(key=rank)
     rivals[0] = _polish_near(calibrator, rivals[0], own)
     simpler = [m for m in rivals[1:] if m.numbers < own.numbers]

@@ -36,6 +36,11 @@ class Screening:
     largest_factor: float = tuned(
         10.0, "Largest factor taken from a secant.", "raised from 4 while the benchmark was built; no sweep recorded"
     )
+    followed: float = tuned(
+        0.01,
+        "Share of the way along which readings follow a sine of the angle, or it is not tried.",
+        "0 for a motor that turns by 8 rad and more between two readings; of a swing that is seven times too fast, still 0.01",
+    )
     iterations: int = tuned(4, "Jacobians of a candidate's own parameters.")
     tolerance: float = tuned(1e-3, "Relative decrease of the cost at which a candidate's fit ends.")
 
