@@ -6,9 +6,8 @@ import math
 
 from numba import njit
 
-from flexarm_env.plant import layout as at
-from flexarm_env.plant.bundles import Line, Motion, Point
-from flexarm_env.plant.propagate import inlined_dot
+from flexarm_env.plant.bundles import Line, Motion, Point, Segment
+from flexarm_env.plant.propagate import dot, inlined_dot
 from flexarm_env.plant.trial_motion import value_at
 
 #: Shortest interval [s] that is halved.
@@ -18,17 +17,17 @@ COARSER = 1.02
 
 
 @njit(forceinline=True)
-def amplitudes(m: Motion, t: float) -> None:
-    """Bound each block's √(c₀ ṗ² + Ṗ²) within t [s], the measure of its second derivative; written to w at `sizes`.
+def amplitudes(m: Motion, z: Segment, force: int, t: float, out: int) -> None:
+    """Bound each block's √(c₀ ṗ² + Ṗ²) within t [s] from z on, the measure of its second derivative; written to w at `out`.
 
     Under a constant force it does not grow in a passive block; the effect of a change of the force is added. Behind it, in the
     same measure, stand bounds of the fourth derivative: (√c₀ + |c₁|)² times as large, and the effect of the change.
     """
-    d, s, w, blocks = m.d, m.s, m.w, m.blocks.number
+    d, w, blocks = m.d, m.w, m.blocks.number
     for k in range(blocks):
-        i = m.force + 2 * k
+        i = force + 2 * k
         a, b = d[m.blocks.c0 + k], d[m.blocks.c1 + k]
-        p, q = s[at.Z_START + 2 * k], s[at.Z_START + 2 * k + 1]
+        p, q = z.data[z.first + 2 * k], z.data[z.first + 2 * k + 1]
         fast = q + w[i]
         slow = w[i + 1] - a * p - b * q
         stretch = math.sqrt(a)
@@ -42,31 +41,43 @@ def amplitudes(m: Motion, t: float) -> None:
             further = fastest * (stretch * f1 + g1) + stretch * f2 + g2
         if b < 0.0:
             size *= math.exp(-b * t)
-        w[m.sizes + k] = size
-        w[m.sizes + blocks + k] = fastest * fastest * size + further
+        w[out + k] = size
+        w[out + blocks + k] = fastest * fastest * size + further
 
 
 @njit(forceinline=True)
-def curvature_bound(m: Motion, line: Line, t: float) -> float:
-    """Bound |d²(row · z)/dt²| over the next t [s], from the amplitudes."""
+def derivative_bounds(m: Motion, line: Line, force: int, t: float, sizes: int) -> tuple[float, float]:
+    """Bound the second and the fourth derivative of a quantity over the next t [s], from the amplitudes."""
     w, blocks = m.w, m.blocks.number
-    total = inlined_dot(m.d, line.weight, w, m.sizes, blocks)
+    second = inlined_dot(m.d, line.weight, w, sizes, blocks) + abs(line.o2)
     if m.blocks.varying:
         for i in range(2 * blocks):
-            change = abs(w[m.force + i + 2 * blocks]) + t * abs(w[m.force + i + 4 * blocks])
-            total += abs(m.d[line.row + i]) * change
-    return total
+            change = abs(w[force + i + 2 * blocks]) + t * abs(w[force + i + 4 * blocks])
+            second += abs(m.d[line.row + i]) * change
+    return second, dot(m.d, line.weight, w, sizes + blocks, blocks)
+
+
+@njit(forceinline=True)
+def bounds_from_trial(m: Motion, line: Line, t: float) -> tuple[float, float]:
+    """Bound both derivatives over the t [s] that follow the trial motion: what has decayed by then bends nothing."""
+    size = 2 * m.blocks.number
+    ahead, sizes = m.copy + 1 + size, m.sizes + size
+    amplitudes(m, Segment(m.w, m.copy + 1), ahead, t, sizes)
+    return derivative_bounds(m, line, ahead, t, sizes)
 
 
 @njit
 def chord_error(c0: float, c1: float, length: float) -> float:
     """Bound the error of the chord of a block's part of a row over a time [s], per unit of the bound on its curvature.
 
-    The smaller of two bounds: by the curvature, and, for a fast block, by twice the size of its vibration.
+    The smaller of two bounds: by the curvature, and, for a fast block, by twice the size of its vibration, or by the size of its
+    decay, beside which it moves evenly.
     """
     largest = 0.125 * length * length
     if c0 > 0.0:
         largest = min(largest, 2.0 * ((math.sqrt(c0) + abs(c1)) / c0) ** 2)
+    elif c0 == 0.0 and c1 > 0.0:
+        largest = min(largest, 1.0 / (c1 * c1))
     return largest * math.exp(max(-c1, 0.0) * length)
 
 
@@ -164,6 +175,7 @@ def first_crossing(m: Motion, line: Line, start: Point, end: Point, second: floa
             break
         if high.t >= end.t:
             return -1.0
+        second, fourth = bounds_from_trial(m, line, end.t - high.t)
         t = min(high.t + 2.0 * width, end.t)
         low, high = high, point_at(m, line, t) if t < end.t else end
     if low.value <= 0.0:

@@ -7,8 +7,8 @@ from typing import NamedTuple
 from numba import njit
 
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.bundles import Arrays, Blocks, Line, Motion, Numbers, Places, Point, SubstepScratch
-from flexarm_env.plant.crossing import amplitudes, curvature_bound, first_crossing, point_at
+from flexarm_env.plant.bundles import Arrays, Blocks, Line, Motion, Numbers, Places, Point, Segment, SubstepScratch
+from flexarm_env.plant.crossing import amplitudes, derivative_bounds, first_crossing, point_at
 from flexarm_env.plant.modes import GEAR_OPEN, is_stuck, record
 from flexarm_env.plant.propagate import dot
 from flexarm_env.plant.stick_slip import applied_offset, has_friction, load_now, static_budget
@@ -33,8 +33,7 @@ def crossing_time(m: Motion, line: Line, start: float, end: float, best: float) 
     The trial motion is advanced to it, and its state then is stored behind the trial motion.
     """
     d, w, size = m.d, m.w, 2 * m.blocks.number
-    bound = curvature_bound(m, line, end) + abs(line.o2)
-    fourth = dot(d, line.weight, w, m.sizes + m.blocks.number, m.blocks.number)
+    bound, fourth = derivative_bounds(m, line, m.force, end, m.sizes)
     value = line.sign * dot(d, line.row, w, m.trial, size) + line.o0 + end * (line.o1 + 0.5 * end * line.o2)
     bend = 0.125 * end * end * bound
     if value > bend and line.sign * dot(d, line.row, m.s, at.Z_START, size) + line.o0 > bend:
@@ -144,7 +143,7 @@ def next_event(a: Arrays, command: float, places: SubstepScratch, start: float, 
     mode, blocks = int(s[at.MODE]), n[at.BLOCKS]
     here = record(n, mode)
     m = motion_of(a, places)
-    amplitudes(m, end)
+    amplitudes(m, Segment(s, at.Z_START), m.force, end, m.sizes)
     best, kind, which = 2.0 * end + 1.0, NOTHING, 0.0
     for body in range(n[at.BODIES]):
         if not has_friction(d, n, body):

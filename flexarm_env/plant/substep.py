@@ -36,7 +36,7 @@ def substep_places(n: Places) -> SubstepScratch:
     nodes = coefficients + 3 * count
     motion = nodes + 5 * count
     sizes = motion + 6 * count
-    copy = sizes + size
+    copy = sizes + 2 * size
     found = copy + copy_size(blocks)
     responses = found + size
     influence = responses + 2 * RESPONSE * blocks
