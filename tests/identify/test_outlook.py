@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from flexarm_env.experiments.next_run import propose
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.explain.detection_limits import DetectionLimit, detection_limits
 from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.select.effect_size import EffectSize
 from flexarm_env.identify.settings import SETTINGS
 
 LEAST = SETTINGS.selecting.least_removed
@@ -38,6 +41,18 @@ def test_a_third_of_what_could_hide_does_and_thrice_as_much_does_not(arm, hidden
         errors.append(fit(arm, recorded(machine)).error["refitted"])
     weak, strong = (error**2 - 1.0 for error in errors)
     assert weak < LEAST < strong
+
+
+def test_few_steps_end_near_where_many_do(arm, hidden, monkeypatch):
+    monkeypatch.setattr(EffectSize, "is_near", lambda size, other: abs(np.log(size.multiple / other.multiple)) < 0.03)
+    settings = replace(SETTINGS, detection=replace(SETTINGS.detection, steps=10, window_steps=25))
+    calibrator = Calibrator(*prepare(arm, recorded(arm), settings))
+    found = detection_limits(calibrator, calibrator.uncalibrated(calibrator.nominal))
+    both = hidden.keys() & found.keys()
+    factors = np.array([abs(np.log(hidden[name].value / found[name].value)) for name in both])
+    assert len(both) > 30
+    assert np.median(factors) < 0.1
+    assert np.quantile(factors, 0.9) < np.log(2.0)
 
 
 def test_the_next_run_tells_apart_what_no_creeping_shows(arm):

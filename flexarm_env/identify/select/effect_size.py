@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -99,9 +99,11 @@ class EffectSize:
         """Whether a smaller size is known to be too small and a larger one large enough."""
         return self.low > 0.0 and self.high < math.inf
 
-    def factor_from(self, other: EffectSize) -> float:
-        """Compute the logarithm of the factor between two sizes, as an absolute value."""
-        return abs(math.log(self.multiple / other.multiple))
+    def is_near(self, other: EffectSize) -> bool:
+        """Whether another size is so near that no further step is worth its replays; nearer, where both sides are known."""
+        numbers = self.numbers
+        most = numbers.close if self.is_bracketed else math.log(numbers.step_up) - numbers.close
+        return abs(math.log(self.multiple / other.multiple)) < most
 
 
 def sizeable(arm: Arm, dataset: Dataset) -> list[str]:
@@ -124,9 +126,8 @@ def smallest_detectable(base: Baseline, name: str, rise_of: Rise) -> EffectSize 
     """
     dataset = base.objective.dataset
     numbers, least = dataset.settings.detection, dataset.settings.selecting.least_removed
-    starts = some_starts_of(base.arm, name, dataset)
-    tried = [_by_innovations(EffectSize(base, name, start), least / numbers.in_windows) for start in starts]
-    size, share = max(tried, key=lambda pair: pair[0].multiple)
+    sizes = [EffectSize(base, name, start, numbers.first) for start in some_starts_of(base.arm, name, dataset)]
+    size, share = _by_innovations(sizes, least / numbers.in_windows)
     found = _by_windows(size, least, share, rise_of)
     if found is None:
         return None
@@ -134,26 +135,32 @@ def smallest_detectable(base: Baseline, name: str, rise_of: Rise) -> EffectSize 
     return found if parameter.low < found.value < parameter.high else None
 
 
-def _by_innovations(size: EffectSize, wanted: float) -> tuple[EffectSize, float]:
-    """Scale a size until the change of the innovations that constants cannot take over is as wanted.
+def _by_innovations(sizes: Sequence[EffectSize], wanted: float) -> tuple[EffectSize, float]:
+    """Scale the size that shows least until the change of the innovations that constants cannot take over is as wanted.
 
     An effect with a state of its own changes them however small it is, with the gains of the observer. It keeps its first size.
+
+    Args:
+        sizes: the same multiple of each of the effect's starts.
+        wanted: the variance.
 
     Returns:
         The size, and the share of its change that constants cannot take over; 1 where innovations do not give the size.
     """
-    first, before, last, share, still = size, size, math.inf, 1.0, 0.0
-    for _ in range(size.numbers.steps):
-        change, left = size.change()
-        if size.multiple < before.multiple and left > size.numbers.stays * last:
-            return first, 1.0
-        if change > size.numbers.least_change:
+    changes = [size.change() for size in sizes]
+    first, (change, left) = min(zip(sizes, changes, strict=True), key=lambda pair: pair[1][1])
+    size, share, still = first, 1.0, 0.0
+    for step in range(1, first.numbers.steps + 1):
+        if change > first.numbers.least_change:
             share = left / change
         else:
             still = max(still, size.multiple)
-        before, last, size = size, left, size.stepped(wanted, left)
-        if size.factor_from(before) < size.numbers.close:
+        before, size = size, size.stepped(wanted, left)
+        if step == first.numbers.steps or size.is_near(before):
             break
+        last, (change, left) = left, size.change()
+        if size.multiple < before.multiple and left > first.numbers.stays * last:
+            return first, 1.0
     return replace(size, low=still, high=math.inf), share
 
 
@@ -162,7 +169,7 @@ def _by_windows(size: EffectSize, wanted: float, share: float, rise_of: Rise) ->
 
     A size below which the error no longer falls is kept: smaller ones are not resolved, as of a compliance.
     """
-    before, last, rises, close = size, math.inf, False, size.numbers.close
+    before, last, rises = size, math.inf, False
     for _ in range(size.numbers.window_steps):
         linear, square = rise_of(size.arm)
         rise = linear + square
@@ -170,6 +177,6 @@ def _by_windows(size: EffectSize, wanted: float, share: float, rise_of: Rise) ->
             return before
         rises = rises or rise > 0.0
         before, last, size = size, rise, size.stepped(wanted, share * square, share * linear)
-        if size.factor_from(before) < (close if size.is_bracketed else math.log(size.numbers.step_up) - close):
+        if size.is_near(before):
             break
     return size if rises else None

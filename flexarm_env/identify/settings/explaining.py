@@ -48,6 +48,9 @@ class Probabilities:
 class DetectionLimits:
     """The size up to which an absent effect would go undetected."""
 
+    first: float = tuned(
+        0.03, "Multiple of a start at which an effect is tried first.", "the middle of what 38 effects end at on `thesis-fem`"
+    )
     step_down: float = tuned(100.0, "Largest factor by which a size is lowered at once.", "raised from 30; why is not known")
     step_up: float = tuned(3.0, "Largest factor by which a size is raised at once.", HIDDEN_SIZES)
     steps: int = tuned(4, "Steps by the innovations.", HIDDEN_SIZES)
