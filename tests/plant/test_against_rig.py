@@ -53,5 +53,5 @@ def test_the_rig_s_recordings_are_met_to_the_noise(name, experiment):
     for level in data.settings.process_noise.screening:  # feedback of the readings does no harm to a model that is right
         torque_noise = level * torque_scale(right, data.runs)
         most = innovation_sigma(right.plant(data.interval), data, torque_noise)
-        problem = Objective(right, data, FitParameters(), torque_noise, Weights(most[None, :], np.empty(0)))
+        problem = Objective(right, data, FitParameters(), torque_noise, Weights(most[None, :], np.empty(0), most[None, :]))
         assert np.sqrt(np.mean(problem.residual_of(right) ** 2)) < 1.02

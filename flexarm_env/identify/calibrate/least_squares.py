@@ -66,6 +66,24 @@ class Solution:
     steps: StepSizes
 
 
+@dataclass(frozen=True)
+class Goal:
+    """What a minimisation has to reach to be of use.
+
+    Attributes:
+        measure: of a residual (rows,).
+        most: its largest value that is of use.
+    """
+
+    measure: Callable[[Floats], float]
+    most: float
+
+    def is_out_of_reach(self, before: Floats, now: Floats, left: int) -> bool:
+        """Whether as many Jacobians as are left end above it, if each lowers the measure as much as the last one did."""
+        reached = self.measure(now)
+        return reached - left * max(self.measure(before) - reached, 0.0) > self.most
+
+
 def jacobian(residual: Residual, x: Floats, steps: Floats, first: int = 0) -> Floats:
     """Compute central differences (rows, steps) of the residual over steps to either side, of x from the first on.
 
@@ -125,8 +143,11 @@ def minimise(
     iterations: int,
     tolerance: float,
     frozen: Floats | None = None,
+    goal: Goal | None = None,
 ) -> Solution:
     """Minimise |residual(x)|² + |x / prior|².
+
+    The first Jacobian says nothing of the next ones: its differences may be far too wide.
 
     Args:
         residual: whitened residual (rows,).
@@ -137,6 +158,7 @@ def minimise(
         iterations: most Jacobians.
         tolerance: relative decrease of the cost at which to stop, unless narrower differences may help.
         frozen: Jacobian (rows, first columns) taken over from elsewhere and not computed again.
+        goal: out of reach of which the minimisation ends.
     """
     r = residual(x)
     point = _Point(x, r, cost_of(r, x, prior), numbers.first_damping)
@@ -144,14 +166,16 @@ def minimise(
     j = np.empty((len(r), len(x)))
     if frozen is not None:
         j[:, :known] = frozen
-    for _ in range(iterations):
+    for number in range(iterations):
         if known < len(x):
             j[:, known:] = jacobian(residual, point.x, steps.now, known)
-        before = point.cost
+        before = point
         point = _descend(residual, point, j, prior, numbers)
-        stays = before - point.cost < tolerance * before
+        stays = before.cost - point.cost < tolerance * before.cost
         finer = steps.adapted(point.residual, j[:, known:], grow=not stays)
         if stays and np.all(finer.now > numbers.shrinks * steps.now):
+            break
+        if goal and number and goal.is_out_of_reach(before.residual, point.residual, iterations - 1 - number):
             break
         steps = finer
     return Solution(point.x, point.cost, point.residual, j, steps)

@@ -31,12 +31,12 @@ class Weights:
     Attributes:
         sigma: (runs, signals) by which errors are divided, SI units.
         prior: (x,) standard deviation of each value.
-        excess_factor: rms of sigma over what the noise of the sensors alone leaves; 1 where errors are weighed by that.
+        noise: (runs, signals) what the noise of the sensors alone leaves of the errors, in the unit of sigma.
     """
 
     sigma: Floats
     prior: Floats
-    excess_factor: float = 1.0
+    noise: Floats
 
 
 @dataclass(frozen=True)
@@ -112,17 +112,18 @@ class Objective:
             narrow_priors: whether the priors of constants are narrowed so.
         """
         dataset = self.dataset
-        sigma = self.rms_errors_of(arm)
-        factor = float(np.sqrt(np.mean((sigma / self._noise_of(arm)) ** 2)))
-        unexplained = max(1.0 - 1.0 / factor**2, 0.0) if narrow_priors else 0.0
+        sigma, noise = self.rms_errors_of(arm), self._noise_of(arm)
+        unexplained = max(1.0 - 1.0 / float(np.mean((sigma / noise) ** 2)), 0.0) if narrow_priors else 0.0
         together = 1.0 + unexplained * max(dataset.settings.calibrating.memory / dataset.interval - 1.0, 0.0)
         narrower = np.array([np.sqrt(together) if p.is_constant else 1.0 for p in self.parameters])
-        return replace(self, weights=Weights(sigma, self.parameters.priors / narrower, factor))
+        return replace(self, weights=Weights(sigma, self.parameters.priors / narrower, noise))
 
     def rms_errors_of(self, arm: Arm) -> Floats:
         """Compute the rms error (runs, signals) of the fitted part, at least the noise."""
-        pairs = zip(self.errors_of(arm), self.dataset.fitted, strict=True)
-        found = np.array([rms_of(errors, run.measured) for errors, run in pairs])
+        return self._rms(self.errors_of(arm))
+
+    def _rms(self, errors: Sequence[Floats]) -> Floats:
+        found = np.array([rms_of(one, run.measured) for one, run in zip(errors, self.dataset.fitted, strict=True)])
         return np.maximum(np.nan_to_num(found, nan=np.inf, posinf=FAILED_ERROR), self.dataset.noise)
 
     def _noise_of(self, arm: Arm) -> Floats:
@@ -142,7 +143,14 @@ class Objective:
     @property
     def excess_factor(self) -> float:
         """The rms of the weights over what noise alone leaves: 1 where errors are weighed by that alone."""
-        return self.weights.excess_factor
+        return float(np.sqrt(np.mean((self.weights.sigma / self.weights.noise) ** 2)))
+
+    def square_over_noise(self, residual: Floats) -> float:
+        """Compute the mean square of the errors of a residual (rows,) over what noise alone leaves, all signals alike."""
+        ends = np.cumsum([run.measured.size for run in self.dataset.fitted])[:-1]
+        triples = zip(np.split(residual, ends), self.dataset.fitted, self.weights.sigma, strict=True)
+        errors = [part.reshape(run.measured.shape) * sigma for part, run, sigma in triples]
+        return float(np.mean((self._rms(errors) / self.weights.noise) ** 2))
 
     def rows_of(self, sigma: Floats) -> Floats:
         """Repeat numbers (runs, signals) for each row of the residual (rows,)."""
@@ -170,4 +178,4 @@ class Objective:
 def objective_at(arm: Arm, dataset: Dataset, parameters: FitParameters, torque_noise: float, reduced: bool = False) -> Objective:
     """Build an objective at one level of process noise [Nm], with errors of unit weight."""
     sigma = np.ones((len(dataset.runs), len(dataset.signals)))
-    return Objective(arm, dataset, parameters, torque_noise, Weights(sigma, parameters.priors), reduced)
+    return Objective(arm, dataset, parameters, torque_noise, Weights(sigma, parameters.priors, sigma), reduced)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibration import Calibration
-from flexarm_env.identify.calibrate.least_squares import Solution, StepSizes, minimise
+from flexarm_env.identify.calibrate.least_squares import Goal, Solution, StepSizes, minimise
 from flexarm_env.identify.calibrate.objective import Objective, objective_at
 from flexarm_env.identify.calibrate.parameters import FitParameters
 from flexarm_env.identify.replay.dataset import Dataset
@@ -42,7 +42,8 @@ class Schedule:
         Args:
             levels: of process noise.
             passes: at the arm's own; none where a level is all that is wanted.
-            most: error over the noise under an observer; a level that leaves more ends the calibration without a result.
+            most: error over the noise under an observer; a level that leaves more ends the calibration without a result, as soon
+                as its remaining Jacobians are not enough.
         """
         own, settings = self.arm.constants["drive"]["torque_noise"], self.dataset.settings
         x = self.parameters.position(self.arm)
@@ -53,9 +54,10 @@ class Schedule:
             if here is not None and here.excess_factor < settings.errors.near:
                 break
             objective = here if here is not None and noise == own else self._objective(x, noise)
-            found = objective, self._minimise(objective, x, steps, last=False)
+            goal = Goal(objective.square_over_noise, most**2) if most < np.inf and noise > own else None
+            found = objective, self._minimise(objective, x, steps, last=False, goal=goal)
             x, steps = self.parameters.within(found[1].x), found[1].steps
-            if most < np.inf and noise > own and self._objective(x, noise).excess_factor > most:
+            if goal and goal.measure(found[1].residual) > goal.most:
                 return None
         if passes:
             objective = self._objective(x, own)
@@ -68,10 +70,10 @@ class Schedule:
         objective = objective_at(self.arm, self.dataset, self.parameters, torque_noise)
         return objective.weighted_by(self.parameters.apply(self.arm, x))
 
-    def _minimise(self, objective: Objective, x: Floats, steps: StepSizes, last: bool) -> Solution:
+    def _minimise(self, objective: Objective, x: Floats, steps: StepSizes, last: bool, goal: Goal | None = None) -> Solution:
         """Minimise at one level; over narrow differences at the last."""
         settings = self.dataset.settings
         numbers, calibrating = settings.least_squares, settings.calibrating
         tolerance = calibrating.final_tolerance if last else calibrating.tolerance
         steps = steps.narrowed(numbers.narrow) if last else steps
-        return minimise(objective.residual, x, objective.weights.prior, steps, numbers, self.iterations, tolerance)
+        return minimise(objective.residual, x, objective.weights.prior, steps, numbers, self.iterations, tolerance, goal=goal)

@@ -95,7 +95,7 @@ def _baseline(arm: Arm, dataset: Dataset) -> Baseline:
     plants = dataset.plants(arm)
     sigma = np.array([innovation_sigma(plants[run.stated], dataset, own) for run in dataset.runs])
     level = max(settings.process_noise.detection * torque_scale(arm, dataset.runs), own)
-    objective = Objective(arm, dataset, parameters, level, Weights(sigma, parameters.priors))
+    objective = Objective(arm, dataset, parameters, level, Weights(sigma, parameters.priors, sigma))
     steps = parameters.step_sizes(parameters.position(arm), settings.parameters)
     wide = baseline_of(objective, steps.now)
     return baseline_of(objective, steps.adapted(np.ones(len(wide.residual)), wide.jacobian, grow=True).now)

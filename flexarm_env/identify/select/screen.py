@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibration import Calibration
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.calibrate.least_squares import minimise
-from flexarm_env.identify.calibrate.objective import Objective, Weights
+from flexarm_env.identify.calibrate.objective import Objective
 from flexarm_env.identify.calibrate.parameters import FitParameters, effect_parameters
 from flexarm_env.identify.progress import Progress
 from flexarm_env.identify.select.signatures import Baseline, Signature, baselines, promising
@@ -74,7 +74,7 @@ def attempt(base: Baseline, signature: Signature | None) -> Trial:
         arm = arm.with_effect(name, **signature.start)
     added = effect_parameters(arm, name, dataset) if name else FitParameters()
     prior = np.concatenate([base.objective.weights.prior, added.priors])
-    weights = Weights(base.objective.weights.sigma, prior)
+    weights = replace(base.objective.weights, prior=prior)
     objective = Objective(
         arm, dataset, base.objective.parameters + added, base.objective.torque_noise, weights, base.objective.reduced
     )
