@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 
 from flexarm_env import Arm, Recording, fit, simulate
 from flexarm_env.experiments.next_run import propose
@@ -53,6 +56,24 @@ def test_few_steps_end_near_where_many_do(arm, hidden, monkeypatch):
     assert len(both) > 30
     assert np.median(factors) < 0.1
     assert np.quantile(factors, 0.9) < np.log(2.0)
+
+
+@given(
+    square=st.floats(0.0, 1e12),
+    linear=st.floats(-1e6, 1e6),
+    below=st.floats(0.0, 1.0),
+    above=st.floats(1.0, 1e6) | st.just(np.inf),
+    multiple=st.floats(1e-12, 1e6),
+)
+@example(square=9.258170937565495e-10, linear=0.19999999917875846, below=0.0, above=17.6, multiple=2.53e-5)
+def test_a_step_goes_towards_what_is_wanted_between_sizes_that_are_known(square, linear, below, above, multiple):
+    base = SimpleNamespace(objective=SimpleNamespace(dataset=SimpleNamespace(settings=SETTINGS)))
+    size = EffectSize(base, "coulomb", {}, multiple, below * multiple, above * multiple)
+    found = size.stepped(LEAST, square, linear)
+    too_small = square + linear < LEAST
+    assert found.low <= found.multiple <= found.high
+    assert found.multiple > 0.0
+    assert found.multiple >= multiple * (1.0 - 1e-9) if too_small else found.multiple <= multiple
 
 
 def test_the_next_run_tells_apart_what_no_creeping_shows(arm):

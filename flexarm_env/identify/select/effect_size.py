@@ -87,11 +87,12 @@ class EffectSize:
             linear: the part that grows with the size.
         """
         half, most = 0.5 * linear, max(square, self.numbers.least_change)
-        factor = (math.sqrt(half**2 + most * wanted) - half) / most
+        root = math.sqrt(half**2 + most * wanted)
+        factor = wanted / (root + half) if half > 0.0 else (root - half) / most  # so that nothing cancels
         multiple = self.multiple * min(max(factor, 1.0 / self.numbers.step_down), self.numbers.step_up)
         low, high = (self.multiple, self.high) if square + linear < wanted else (self.low, self.multiple)
         if not low <= multiple <= high:
-            multiple = math.sqrt(low * high)
+            multiple = math.sqrt(low * high) if low > 0.0 else high
         return replace(self, multiple=multiple, low=low, high=high)
 
     @property
