@@ -1,0 +1,123 @@
+"""Faults that several recordings show together: a unit of all, a lag beside wrong constants, what is an effect's instead."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from flexarm_env import Arm, Recording, simulate
+from flexarm_env.identify.inspect.motion import motion_faults
+from tests.identify.inspect.faulty import CLOSE, found_in, late, sound, with_signal
+
+
+def test_each_recording_has_faults_of_its_own():
+    faulty = replace(with_signal(sound(), "arm_angle", lambda values: -values), name="other")
+    (fault,) = motion_faults(Arm.load("thesis"), [sound(), faulty])
+    assert fault.recording == "other"
+
+
+def three_runs() -> list[Recording]:
+    return [replace(sound(experiment=name), name=name) for name in ("square", "pulse", "sweep")]
+
+
+def test_a_unit_is_that_of_all_recordings():
+    """The third run hardly moves, so that it shows no factor by itself."""
+    square, pulse, _ = three_runs()
+    draws = np.random.default_rng(0)
+    noise = {name: draws.normal(0.0, 0.01, len(square)) for name in square.signals}
+    still = Recording.from_arrays("still", square.time, "current", 0.0 * square.command, noise)
+    assert motion_faults(Arm.load("thesis"), [still]) == []
+    slow = [with_signal(one, "motor_speed", lambda speed: speed / math.tau) for one in (square, pulse, still)]
+    found = motion_faults(Arm.load("thesis"), slow)
+    assert [one.recording for one in found] == ["square", "pulse", "still"]
+    assert {(one.kind, one.signal) for one in found} == {("factor", "motor_speed")}
+    assert all(one.value == pytest.approx(1.0 / math.tau, rel=CLOSE) for one in found)
+
+
+def test_a_small_factor_in_one_of_three_recordings_is_that_of_an_effect():
+    """A ripple of the tachometer once per turn looks like a gain where the motor turns little."""
+    square, pulse, sweep = three_runs()
+
+    def ripple(speed):
+        return speed * (1.0 - 0.3 * np.cos(1.5 * sweep.signals["arm_angle"]))
+
+    rippled = with_signal(sweep, "motor_speed", ripple)
+    assert [one.kind for one in motion_faults(Arm.load("thesis"), [rippled])] == ["factor"]
+    assert motion_faults(Arm.load("thesis"), [square, pulse, rippled]) == []
+
+
+def test_a_spring_that_the_model_lacks_is_no_clock():
+    """A cable turns the phase of the motion, early against the model, and most where the commands are slow."""
+    arm = Arm.load("thesis").with_effect("viscous", coefficient=0.1).without_effect("coulomb").without_effect("stiction")
+    for stiffness in (0.1, 0.3, 1.0):
+        sprung = arm.with_effect("cable_stiffness", stiffness=stiffness, rest_angle=0.2)
+        runs = [simulate(sprung, name, duration=6.0, seed=3, name=name) for name in ("square", "pulse", "sweep")]
+        angle = [replace(run, signals={"arm_angle": run.signals["arm_angle"]}) for run in runs]
+        for one in (*runs, *angle):
+            assert motion_faults(arm, [one]) == []
+
+
+def machine_of(arm: str, **factors: float) -> list[Recording]:
+    """Three recordings of a machine whose constants are multiples of those of an arm."""
+    model = Arm.load(arm)
+    changed = model.with_values({path: factor * model.value(path) for path, factor in factors.items()})
+    return [simulate(changed, name, duration=6.0, rate=250.0, seed=2, name=name) for name in ("square", "pulse", "sweep")]
+
+
+#: Constants of a machine a few percent off those of its arm file.
+OFF = {"drive.torque_constant": 1.06, "hub.inertia": 0.95}
+BEAM_OFF = {"beam.mass_per_length": 1.05, "beam.bending_stiffness": 0.94}
+
+
+@pytest.mark.parametrize(("arm", "lag"), [("thesis-fem", 0.4), ("cu-rigid", 0.068), ("cu-flexible", 0.12)])
+def test_a_lag_of_all_signals_is_exact_though_the_constants_are_not(arm, lag):
+    runs = machine_of(arm, **OFF)
+    assert motion_faults(Arm.load(arm), runs) == []
+    found = motion_faults(Arm.load(arm), [late(run, lag, tuple(run.signals)) for run in runs])
+    assert [(one.kind, one.signal) for one in found] == [("clock", "")] * 3
+    assert all(one.value == pytest.approx(lag, rel=CLOSE) for one in found)
+
+
+@pytest.mark.parametrize(
+    ("arm", "signal", "factor"),
+    [("cu-flexible", "tip_deflection", 1.9), ("thesis", "strain_mid", 0.55), ("thesis", "strain_mid", 6.3)],
+)
+def test_a_factor_of_a_beam_s_signal_is_exact_though_the_constants_are_not(arm, signal, factor):
+    runs = machine_of(arm, **OFF, **BEAM_OFF)
+    assert motion_faults(Arm.load(arm), runs) == []
+    found = motion_faults(Arm.load(arm), [with_signal(run, signal, lambda values: factor * values) for run in runs])
+    assert [(one.kind, one.signal) for one in found] == [("factor", signal)] * 3
+    assert all(one.value == pytest.approx(factor, rel=CLOSE) for one in found)
+
+
+def test_a_gage_exchanged_with_the_tachometer_is_found_beside_wrong_constants():
+    (run, *_) = machine_of("thesis", **OFF)
+    exchanged = run.signals | {"motor_speed": run.signals["strain_base"], "strain_base": run.signals["motor_speed"]}
+    fault = found_in("thesis", replace(run, signals=exchanged))
+    assert (fault.kind, {fault.signal, fault.other}) == ("swapped", {"motor_speed", "strain_base"})
+
+
+@pytest.mark.parametrize("arm", ["thesis", "cu-rigid", "cu-flexible"])
+@pytest.mark.parametrize("lag", [0.012, 0.048])
+def test_an_angle_late_by_milliseconds_is_found_against_the_speed(arm, lag):
+    """The model has other constants, which change nothing: angle and speed are readings of one motion."""
+    runs = [simulate(Arm.load(arm), name, duration=6.0, rate=250.0, seed=2, name=name) for name in ("square", "pulse", "sweep")]
+    changed = Arm.load(arm).with_values({"hub.inertia": 1.2 * Arm.load(arm).value("hub.inertia")})
+    found = motion_faults(changed, [late(run, lag, ("arm_angle",)) for run in runs])
+    assert [(one.kind, one.signal, one.other) for one in found] == 3 * [("clock", "arm_angle", "motor_speed")]
+    assert all(one.value == pytest.approx(lag, rel=CLOSE) for one in found)
+    assert "late against motor_speed" in found[0].message
+
+
+@pytest.mark.parametrize("times", [1.0, 4.0])
+@pytest.mark.parametrize("effect", ["backlash", "gear_compliance", "tach_filter", "pot_nonlinearity", "tach_ripple"])
+def test_effects_between_motor_and_angle_are_no_lag(effect, times):
+    arm = Arm.load("thesis")
+    sizes = {name: one for name, one in arm.known[effect].parameters.items() if one.null is not None}
+    size = {name: one.typical * (times if math.isfinite(one.null) else 1.0 / times) for name, one in sizes.items()}
+    machine = arm.with_effect(effect, **size)
+    runs = [simulate(machine, name, duration=6.0, seed=2, name=name) for name in ("square", "pulse", "sweep")]
+    assert not [one for run in runs for one in motion_faults(arm, [run]) if one.kind == "clock"]
