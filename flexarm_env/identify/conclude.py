@@ -54,7 +54,7 @@ def conclude(
         torque = {name: unexplained_torque(one, calibrator.dataset) for name, one in arms.items()}
         shares = replace(shares, torque=torque)
     with calibrator.workers.threads():
-        final = calibrator.calibrate_on_all_data(model.calibration)
+        final = (calibrator.finish if accepted else calibrator.calibrate_on_all_data)(model.calibration)
         values = estimates(final, nominal)
         ranking = _ranking(trace, steps[1:], values, nominal)
     scores = {"nominal": nominal_score, "refitted": base.score, **{s.name: s.after for s in steps[1:]}, "final": model.score}

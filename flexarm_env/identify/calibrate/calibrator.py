@@ -253,6 +253,21 @@ class Calibrator:
         stayed = replace(solution, x=x, residual=objective.residual(x))
         return replace(again, arm=found.arm, solution=stayed, moved=np.hypot(refined.x - x, refined.scatter))
 
+    def finish(self, found: Calibration) -> Calibration:
+        """Calibrate on all of the data for good, once a model was chosen.
+
+        Where it is far off, errors are so rough that a calibration ends near where it began. It is continued as long as that
+        lowers the error, from the nominal constants as well; the better end stands, as uncertain as the others are away.
+        """
+        if self._error_on_all_data(found.arm) <= self.settings.errors.far_off:
+            return self.calibrate_on_all_data(found)
+        starts = (found, self.calibrate(self.nominal_with_effects_of(found.arm)))
+        ends = [self._continue_on_all_data(start) for start in starts]
+        best = min(ends, key=lambda end: end[1])[0]
+        others = [best.parameters.position(arm) for arm in (found.arm, *(end.arm for end, _ in ends))]
+        apart = np.abs(np.array(others) - best.solution.x).max(axis=0)
+        return replace(best, moved=apart if best.moved is None else np.hypot(best.moved, apart))
+
     def nominal_with_effects_of(self, arm: Arm) -> Arm:
         """Give the nominal arm the effects that another has beside its own."""
         added = {name: arm.effects[name] for name in arm.effects if name not in self.nominal.effects}
