@@ -9,6 +9,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.conclude import at_fault, conclude, insufficient, verdict_of, with_outlook
 from flexarm_env.identify.deadline import Deadline
+from flexarm_env.identify.inspect.clock import is_drive_delay
 from flexarm_env.identify.inspect.inspection import inspect_recordings
 from flexarm_env.identify.progress import Progress, ProgressCallback
 from flexarm_env.identify.replay.dataset import prepare
@@ -66,10 +67,11 @@ def diagnose(
     nominal, dataset = prepare(arm, recordings, settings, rate)
     constants.at(0.0, "inspecting the recordings")
     inspected = inspect_recordings(arm, recordings, settings)
-    if inspected.faults:
+    late = is_drive_delay(inspected.faults, len(recordings), settings.motion)
+    if inspected.faults and not late:
         return _with_run_facts(at_fault(arm, inspected.faults, settings), [], deadline, seed)
     checked = preflight(dataset)
-    notes = list(checked.notes)
+    notes = [fault.line for fault in inspected.faults] + list(checked.notes)
     calibrator = Calibrator(nominal, dataset, Workers(jobs, deadline))
     if checked.too_poor:
         return _with_run_facts(insufficient(arm, calibrator), notes, deadline, seed)

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibration import Calibration
-from flexarm_env.identify.calibrate.least_squares import Solution, minimise
+from flexarm_env.identify.calibrate.least_squares import Ending, Solution, minimise
 from flexarm_env.identify.calibrate.objective import objective_at
 from flexarm_env.identify.calibrate.parameters import free_parameters
 from flexarm_env.identify.calibrate.refine import refine
@@ -243,8 +243,8 @@ class Calibrator:
         x, prior = parameters.position(found.arm), objective.weights.prior
         is_close = objective.excess_factor <= self.settings.errors.close  # and will be refined
         iterations = 1 if is_close else numbers.last_iterations
-        steps, tolerance = found.solution.steps, numbers.final_tolerance
-        solution = minimise(objective.residual, x, prior, steps, self.settings.least_squares, iterations, tolerance)
+        steps, ending = found.solution.steps, Ending(iterations, numbers.final_tolerance)
+        solution = minimise(objective.residual, x, prior, steps, self.settings.least_squares, ending)
         refined = refine(objective, solution.x)
         moved, at = np.hypot(solution.x - x, refined.scatter), replace(solution, x=refined.x, residual=refined.residual)
         again = Calibration(parameters.apply(found.arm, refined.x), at, objective, moved, refined.jacobian)

@@ -84,6 +84,21 @@ class Goal:
         return reached - left * max(self.measure(before) - reached, 0.0) > self.most
 
 
+@dataclass(frozen=True)
+class Ending:
+    """When a minimisation ends.
+
+    Attributes:
+        iterations: most Jacobians.
+        tolerance: relative decrease of the cost at which to stop, unless narrower differences may help.
+        goal: out of reach of which it stops; none if left out.
+    """
+
+    iterations: int
+    tolerance: float
+    goal: Goal | None = None
+
+
 def jacobian(residual: Residual, x: Floats, steps: Floats, first: int = 0) -> Floats:
     """Compute central differences (rows, steps) of the residual over steps to either side, of x from the first on.
 
@@ -140,10 +155,8 @@ def minimise(
     prior: Floats,
     steps: StepSizes,
     numbers: LeastSquares,
-    iterations: int,
-    tolerance: float,
+    ending: Ending,
     frozen: Floats | None = None,
-    goal: Goal | None = None,
 ) -> Solution:
     """Minimise |residual(x)|² + |x / prior|².
 
@@ -155,10 +168,8 @@ def minimise(
         prior: standard deviation of each x around 0.
         steps: of the differences; of the last of x, where there are frozen columns.
         numbers: dampings and step rules.
-        iterations: most Jacobians.
-        tolerance: relative decrease of the cost at which to stop, unless narrower differences may help.
+        ending: of the minimisation.
         frozen: Jacobian (rows, first columns) taken over from elsewhere and not computed again.
-        goal: out of reach of which the minimisation ends.
     """
     r = residual(x)
     point = _Point(x, r, cost_of(r, x, prior), numbers.first_damping)
@@ -166,16 +177,18 @@ def minimise(
     j = np.empty((len(r), len(x)))
     if frozen is not None:
         j[:, :known] = frozen
-    for number in range(iterations):
+    goal = ending.goal
+    for left in reversed(range(ending.iterations)):
         if known < len(x):
             j[:, known:] = jacobian(residual, point.x, steps.now, known)
         before = point
         point = _descend(residual, point, j, prior, numbers)
-        stays = before.cost - point.cost < tolerance * before.cost
+        stays = before.cost - point.cost < ending.tolerance * before.cost
         finer = steps.adapted(point.residual, j[:, known:], grow=not stays)
         if stays and np.all(finer.now > numbers.shrinks * steps.now):
             break
-        if goal and number and goal.is_out_of_reach(before.residual, point.residual, iterations - 1 - number):
+        is_first = left == ending.iterations - 1
+        if goal and not is_first and goal.is_out_of_reach(before.residual, point.residual, left):
             break
         steps = finer
     return Solution(point.x, point.cost, point.residual, j, steps)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibration import Calibration
-from flexarm_env.identify.calibrate.least_squares import Goal, Solution, StepSizes, minimise
+from flexarm_env.identify.calibrate.least_squares import Ending, Goal, Solution, StepSizes, minimise
 from flexarm_env.identify.calibrate.objective import Objective, objective_at
 from flexarm_env.identify.calibrate.parameters import FitParameters
 from flexarm_env.identify.replay.dataset import Dataset
@@ -76,4 +76,5 @@ class Schedule:
         numbers, calibrating = settings.least_squares, settings.calibrating
         tolerance = calibrating.final_tolerance if last else calibrating.tolerance
         steps = steps.narrowed(numbers.narrow) if last else steps
-        return minimise(objective.residual, x, objective.weights.prior, steps, numbers, self.iterations, tolerance, goal=goal)
+        ending = Ending(self.iterations, tolerance, goal)
+        return minimise(objective.residual, x, objective.weights.prior, steps, numbers, ending)

@@ -34,6 +34,10 @@ class Agreement:
         """Share of the measured variance that the model explains with a gain of 1."""
         return self.share / self.gain * (2.0 - 1.0 / self.gain) if self.gain > 0.0 else 0.0
 
+    def explains_more_than(self, other: Agreement, numbers: MotionFaults) -> bool:
+        """Whether it leaves a small part of what another leaves."""
+        return 1.0 - self.share < numbers.unexplained * (1.0 - other.share)
+
     def is_within(self, factor: float) -> bool:
         """Whether the gain is 1 within a factor."""
         return 1.0 / factor < self.gain < factor
@@ -68,25 +72,29 @@ def in_windows(values: Floats, cell: float, numbers: MotionFaults) -> Floats:
 
 
 def agreement_late(measured: Floats, modelled: Floats, cell: float, numbers: MotionFaults) -> Agreement:
-    """Fit a gain at the lag at which a signal agrees best: at none where it has the model's shape without."""
+    """Fit a gain at the lag at which a signal agrees best: at none where it has the model's shape without.
+
+    Half a period late, a vibration looks turned round: a lag with a positive gain that explains much more than none comes first.
+    """
     at_once = agreement(measured, modelled, cell, numbers)
-    if at_once.share > numbers.same_shape:
+    if at_once.share > numbers.same_shape and at_once.gain > 0.0:
         return at_once
     tried = [at_once]
     for lag in _likely_lags(measured, modelled, cell, numbers):
-        best, step = _at_lag(measured, modelled, lag, cell, numbers), numbers.lag_step
+        best, step = agreement_at(measured, modelled, lag, cell, numbers), numbers.lag_step
         while step > numbers.lag_resolution:
-            sides = (_at_lag(measured, modelled, best.lag + side * step, cell, numbers) for side in (-1, 1))
+            sides = (agreement_at(measured, modelled, best.lag + side * step, cell, numbers) for side in (-1, 1))
             better = max(sides, key=lambda one: one.share)
             if better.share > best.share:
                 best = better
             else:
                 step *= 0.5
         tried.append(best)
-    return max(tried, key=lambda one: one.share)
+    later = [one for one in tried if one.gain > 0.0 and one.explains_more_than(at_once, numbers)]
+    return max(later or tried, key=lambda one: one.share)
 
 
-def _at_lag(measured: Floats, modelled: Floats, lag: float, cell: float, numbers: MotionFaults) -> Agreement:
+def agreement_at(measured: Floats, modelled: Floats, lag: float, cell: float, numbers: MotionFaults) -> Agreement:
     """Fit a gain at a lag [s]."""
     return replace(agreement(measured, delayed(modelled, lag / cell), cell, numbers), lag=lag)
 

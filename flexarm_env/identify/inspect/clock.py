@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from flexarm_env.identify.inspect.evidence import Evidence
@@ -9,6 +11,7 @@ from flexarm_env.identify.inspect.fault import Fault
 from flexarm_env.identify.inspect.hub_lag import hub_lag
 from flexarm_env.identify.inspect.report import fault
 from flexarm_env.identify.inspect.series import HUB
+from flexarm_env.identify.settings import MotionFaults
 
 
 def late_signals(evidence: Evidence) -> list[Fault]:
@@ -74,6 +77,20 @@ def _others_are_in_time(evidence: Evidence, signal: str) -> bool:
         return False
     beside = [other for name, other in evidence.late.items() if name != signal]
     return any(other.share > numbers.similar and abs(other.lag) < numbers.same_lag for other in beside)
+
+
+def is_drive_delay(faults: Sequence[Fault], recordings: int, numbers: MotionFaults) -> bool:
+    """Whether all that is at fault is one lag of all signals in every recording, as a drive that acts late makes it.
+
+    Args:
+        faults: of all recordings.
+        recordings: their number.
+        numbers: of the faults of motion.
+    """
+    lags = [fault.value for fault in faults if fault.kind == "clock" and not fault.signal and fault.value is not None]
+    if not lags or len(lags) != len(faults) or len({fault.recording for fault in faults}) != recordings:
+        return False
+    return min(lags) > 0.0 and max(lags) <= numbers.longest_drive_delay and max(lags) - min(lags) < numbers.same_lag
 
 
 def clock_fault(evidence: Evidence, signal: str, lag: float, other: str = "") -> Fault:

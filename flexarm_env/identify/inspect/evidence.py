@@ -69,8 +69,8 @@ class Evidence:
 
     def is_like_model_later(self, signal: str) -> bool:
         """Whether a signal runs with the model at a lag, and much more so than without."""
-        late, at_once = self.late[signal], self.at_once[signal]
-        return late.gain > 0.0 and 1.0 - late.share < self.numbers.unexplained * (1.0 - at_once.share)
+        late = self.late[signal]
+        return late.gain > 0.0 and late.explains_more_than(self.at_once[signal], self.numbers)
 
     def others(self, signal: str) -> list[Agreement]:
         """List the agreements of all signals but one, without a lag."""

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.inspect.agreement import Agreement, agreement, agreement_filtered, agreement_late
+from flexarm_env.identify.inspect.agreement import Agreement, agreement, agreement_at, agreement_filtered, agreement_late
 from flexarm_env.identify.replay.dataset import Dataset, prepare
 from flexarm_env.identify.replay.initial_state import Start, find_start
 from flexarm_env.identify.replay.reading_noise import NoiseBySignal
@@ -56,6 +56,10 @@ class FreeRun:
     def late(self) -> Table:
         """Compare every signal with its model, at the lag of each."""
         return {signal: agreement_late(*self._pair(signal, signal), self.cell, self.numbers) for signal in self.signals}
+
+    def late_by(self, lag: float) -> Table:
+        """Compare every signal with its model at one lag [s]."""
+        return {signal: agreement_at(*self._pair(signal, signal), lag, self.cell, self.numbers) for signal in self.signals}
 
     def filtered(self, signal: str) -> Agreement:
         """Compare a signal with its model behind the first-order filter with which they agree best."""

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
+from flexarm_env.identify.inspect.clock import clock_fault
 from flexarm_env.identify.inspect.evidence import Evidence
 from flexarm_env.identify.inspect.factor_words import is_of_unit
 from flexarm_env.identify.inspect.fault import Fault
@@ -20,6 +21,7 @@ def in_common(evidence: Sequence[Evidence], found: Sequence[Sequence[Fault]]) ->
         evidence: on each recording.
         found: the faults of each, judged alone.
     """
+    found = _with_one_lag(evidence, found)
     most = [key for key in _keys(found) if 2 * len(_with_key(found, key)) > len(found)]
     if most:
         middle = [_middle(_with_key(found, key)) for key in most]
@@ -27,6 +29,33 @@ def in_common(evidence: Sequence[Evidence], found: Sequence[Sequence[Fault]]) ->
     alone = len(found) == 1
     pairs = zip(evidence, found, strict=True)
     return [one for e, faults in pairs for one in faults if alone or _is_certain(e, one)]
+
+
+def _with_one_lag(evidence: Sequence[Evidence], found: Sequence[Sequence[Fault]]) -> Sequence[Sequence[Fault]]:
+    """Put the lag of all signals at which every faulty recording agrees with the model in place of signs and of other lags.
+
+    Half a period late, a vibration looks turned round, and a whole one late, in time: one recording alone may not tell.
+    """
+    shown = [[fault.value for fault in faults if _is_of_all_signals(fault) and fault.value is not None] for faults in found]
+    faulty = [one for one, faults in zip(evidence, found, strict=True) if faults]
+
+    def agrees(lag: float) -> float:
+        every = [agreement for one in faulty for agreement in one.run.late_by(lag).values()]
+        return min(agreement.share if agreement.gain > 0.0 else 0.0 for agreement in every)
+
+    lag = max((value for values in shown for value in values), key=agrees, default=0.0)
+    if lag == 0.0 or agrees(lag) <= evidence[0].numbers.alike:
+        return found
+    pairs = zip(evidence, found, strict=True)
+    return [[clock_fault(one, "", lag)] if faults and all(map(_may_be_a_lag, faults)) else faults for one, faults in pairs]
+
+
+def _is_of_all_signals(fault: Fault) -> bool:
+    return fault.kind == "clock" and not fault.signal
+
+
+def _may_be_a_lag(fault: Fault) -> bool:
+    return fault.kind == "sign" or _is_of_all_signals(fault)
 
 
 def _key(fault: Fault) -> Key:

@@ -10,7 +10,7 @@ import numpy as np
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibration import Calibration
 from flexarm_env.identify.calibrate.calibrator import Calibrator
-from flexarm_env.identify.calibrate.least_squares import minimise
+from flexarm_env.identify.calibrate.least_squares import Ending, minimise
 from flexarm_env.identify.calibrate.objective import Objective
 from flexarm_env.identify.calibrate.parameters import FitParameters, effect_parameters
 from flexarm_env.identify.progress import Progress
@@ -80,8 +80,8 @@ def attempt(base: Baseline, signature: Signature | None) -> Trial:
     )
     start = added.position(arm)
     steps, x = added.step_sizes(start, dataset.settings.parameters), np.concatenate([base.x, start])
-    numbers, iterations, tolerance = dataset.settings.least_squares, screening.iterations, screening.tolerance
-    solution = minimise(objective.residual, x, prior, steps, numbers, iterations, tolerance, base.jacobian)
+    ending = Ending(screening.iterations, screening.tolerance)
+    solution = minimise(objective.residual, x, prior, steps, dataset.settings.least_squares, ending, base.jacobian)
     best = objective.parameters.apply(arm, solution.x)
     held_out = objective.held_out_residual_of(best)
     return Trial(name, best, solution.cost, float(held_out @ held_out))

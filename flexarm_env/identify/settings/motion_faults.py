@@ -50,6 +50,12 @@ class MotionFaults:
         "350 simulated machines with constants 30 % off and effects: lags of up to 0.084 s without a clock's fault",
         "s",
     )
+    longest_drive_delay: float = tuned(
+        0.1,
+        "Longest lag of all signals that a diagnosis takes as a delay of the drive, and looks for an effect.",
+        "delays of 60 to 90 ms were named on seven arms; half a second is a clock's",
+        "s",
+    )
     least_hub_lag: float = tuned(
         0.004, "The same for the angle behind the speed, which are readings of one motion.", EFFECTS_OF_THE_HUB, "s"
     )

@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from flexarm_env import Arm, Recording, simulate
+from flexarm_env.identify.inspect.clock import is_drive_delay
 from flexarm_env.identify.inspect.motion import motion_faults
+from flexarm_env.identify.settings import SETTINGS
 from tests.identify.inspect.faulty import CLOSE, found_in, late, sound, with_signal
 
 
@@ -121,3 +123,17 @@ def test_effects_between_motor_and_angle_are_no_lag(effect, times):
     machine = arm.with_effect(effect, **size)
     runs = [simulate(machine, name, duration=6.0, seed=2, name=name) for name in ("square", "pulse", "sweep")]
     assert not [one for run in runs for one in motion_faults(arm, [run]) if one.kind == "clock"]
+
+
+@pytest.mark.parametrize("arm", ["thesis", "thesis-fem"])
+@pytest.mark.parametrize("delay", [0.055, 0.06])
+def test_half_a_period_late_is_not_turned_round(arm, delay):
+    """Square and sweep ring at 8 Hz; the pulses alone tell a lag from a sign."""
+    model = Arm.load(arm)
+    late_drive = model.with_effect("input_delay", delay=delay)
+    runs = [simulate(late_drive, name, duration=6.0, rate=250.0, seed=2, name=name) for name in ("square", "pulse", "sweep")]
+    found = motion_faults(model, runs)
+    assert [(one.kind, one.signal) for one in found] == [("clock", "")] * 3
+    assert all(one.value == pytest.approx(delay, rel=0.05) for one in found)
+    assert is_drive_delay(found, len(runs), SETTINGS.motion)
+    assert not is_drive_delay(found[:2], len(runs), SETTINGS.motion)
