@@ -248,8 +248,8 @@ class Search:
                 continue
             for place, other in enumerate(kept):
                 rest = trace.model.arm.without_effect(effect).without_effect(other.effect)
-                lacking = candidates(rest, self.calibrator.dataset)
-                names = [n for n in other.equivalent[1:] if n not in trace.effects and n in lacking]
+                equivalent = [n for n in other.equivalent[1:] if n not in trace.effects]
+                names = [n for n in equivalent if n in candidates(rest, self.calibrator.dataset)]
                 models = fit_in_place(
                     self.calibrator, rest, names, Progress(), thorough=True, rivals_of_noise=self._is_near(trace.model)
                 )
@@ -257,8 +257,8 @@ class Search:
                 if better:
                     best = min(better, key=lambda m: m.score.windows)
                     name = best.effects[0]
-                    equivalent = (name, *(m.effects[0] for m in better if m is not best))
-                    entry = Accepted(name, equivalent, best.score, others_of([a.effect for a in kept], place))
+                    alike = (name, *(m.effects[0] for m in better if m is not best))
+                    entry = Accepted(name, alike, best.score, others_of([a.effect for a in kept], place))
                     return trace.then("drop", best, placed(kept, place, entry))
         return trace
 
