@@ -45,7 +45,9 @@ def compared(
     calibrator = SimpleNamespace(
         settings=SETTINGS,
         workers=SimpleNamespace(threads=nullcontext),
-        dataset=SimpleNamespace(signals=(), readings=lambda held_out: 2000),
+        dataset=SimpleNamespace(
+            signals=(), noise=(), scales={}, middle_of_travel=0.0, settings=SETTINGS, readings=lambda held_out: 2000
+        ),
         polish=lambda calibration: calibration,
         calibrate_on_all_data=lambda calibration: calibration,
     )
