@@ -266,7 +266,7 @@ class Calibrator:
         best = min(ends, key=lambda end: end[1])[0]
         others = [best.parameters.position(arm) for arm in (found.arm, *(end.arm for end, _ in ends))]
         apart = np.abs(np.array(others) - best.solution.x).max(axis=0)
-        return replace(best, moved=apart if best.moved is None else np.hypot(best.moved, apart))
+        return replace(best, moved=np.hypot(0.0 if best.moved is None else best.moved, apart))
 
     def nominal_with_effects_of(self, arm: Arm) -> Arm:
         """Give the nominal arm the effects that another has beside its own."""

@@ -36,15 +36,14 @@ def _with_one_lag(evidence: Sequence[Evidence], found: Sequence[Sequence[Fault]]
 
     Half a period late, a vibration looks turned round, and a whole one late, in time: one recording alone may not tell.
     """
-    shown = [[fault.value for fault in faults if _is_of_all_signals(fault) and fault.value is not None] for faults in found]
+    lags = [fault.value for faults in found for fault in faults if _is_of_all_signals(fault) and fault.value is not None]
     faulty = [one for one, faults in zip(evidence, found, strict=True) if faults]
 
     def agrees(lag: float) -> float:
         every = [agreement for one in faulty for agreement in one.run.late_by(lag).values()]
         return min(agreement.share if agreement.gain > 0.0 else 0.0 for agreement in every)
 
-    lag = max((value for values in shown for value in values), key=agrees, default=0.0)
-    if lag == 0.0 or agrees(lag) <= evidence[0].numbers.alike:
+    if not lags or agrees(lag := max(lags, key=agrees)) <= evidence[0].numbers.alike:
         return found
     pairs = zip(evidence, found, strict=True)
     return [[clock_fault(one, "", lag)] if faults and all(map(_may_be_a_lag, faults)) else faults for one, faults in pairs]

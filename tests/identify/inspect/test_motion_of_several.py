@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexarm_env import Arm, Recording, simulate
+from flexarm_env import Arm, Recording, diagnose, simulate
 from flexarm_env.identify.inspect.clock import is_drive_delay
 from flexarm_env.identify.inspect.motion import motion_faults
 from flexarm_env.identify.settings import SETTINGS
@@ -137,3 +137,19 @@ def test_half_a_period_late_is_not_turned_round(arm, delay):
     assert all(one.value == pytest.approx(delay, rel=0.05) for one in found)
     assert is_drive_delay(found, len(runs), SETTINGS.motion)
     assert not is_drive_delay(found[:2], len(runs), SETTINGS.motion)
+
+
+@pytest.mark.parametrize(("delay", "verdict"), [(0.08, "effects"), (0.3, "recordings")])
+def test_a_drive_that_acts_late_is_an_effect_and_one_too_late_a_clock(delay, verdict):
+    model = Arm.load("cu-rigid")
+    late_drive = model.with_effect("input_delay", delay=delay)
+    runs = [simulate(late_drive, name, duration=6.0, rate=250.0, seed=2, name=name) for name in ("square", "pulse")]
+    found = diagnose(model, runs, jobs=1)
+    assert found.verdict == verdict
+    if verdict == "recordings":
+        assert [one.value for one in found.recordings] == pytest.approx([delay] * 2, rel=CLOSE)
+        return
+    assert found.effects[0] in ("input_delay", "time_offset")
+    (estimate,) = (one for name, one in found.constants.items() if name.startswith(found.effects[0]))
+    assert estimate.value == pytest.approx(delay, rel=CLOSE)
+    assert any("late against the command" in note for note in found.notes)
