@@ -16,6 +16,8 @@ from flexarm_env.sensors import known_sensors
 
 PLACES: dict[str, type] = {"column": str, "index": int, "variable": str}
 _CONVERSION = ("unit", "sign", "scale")
+#: What is made of a condition whose numbers differ, and how its key is explained.
+_OF_CHANGES = {"mean": "the mean of numbers that differ", "split": "a recording for each of its numbers"}
 
 
 def listed(words: Iterable[str]) -> str:
@@ -78,7 +80,7 @@ def _allowed_keys(name: str) -> tuple[str, ...]:
     if name == "time":
         return (*PLACES, *_CONVERSION, *TIME_KEYS, "row", "rate")
     if name not in UNITS:
-        return (*PLACES, *_CONVERSION, "row", "mean")
+        return (*PLACES, *_CONVERSION, "row", *_OF_CHANGES)
     of_kind = SIGNAL_KEYS if name in known_sensors() else ("value",) if name in INPUTS else ()
     return (*PLACES, *_CONVERSION, *of_kind, "row", "file", "time")
 
@@ -120,12 +122,19 @@ def _part(name: str, key: str, place: Any, unit: Any, entry: Mapping[str, Any]) 
         raise InputError(f"{where}: scale is {scale!r}; write a number that is not zero")
     row = _number_from_zero(name, "row", entry)
     cut = _number_from_zero(name, "index", entry) if key == "variable" else None
-    mean = entry.get("mean", False)
-    if not isinstance(mean, bool):
-        raise InputError(f"{where}: mean is {mean!r}; write true for the mean of numbers that differ, or leave it out")
-    return Source(
-        place, unit, int(sign), scale, key, row, cut, _file(name, entry), corrections=_corrections(name, entry), mean=mean
-    )
+    mean, split = (_is_wanted(name, key, entry) for key in _OF_CHANGES)
+    if mean and split:
+        raise InputError(f"{where}: has both {listed(_OF_CHANGES)}; keep one of the two")
+    corrections = _corrections(name, entry)
+    return Source(place, unit, int(sign), scale, key, row, cut, _file(name, entry), (), corrections, mean, split)
+
+
+def _is_wanted(name: str, key: str, entry: Mapping[str, Any]) -> bool:
+    """Read whether a key says what is made of a condition whose numbers differ."""
+    value = entry.get(key, False)
+    if not isinstance(value, bool):
+        raise InputError(f"[columns] {name}: {key} is {value!r}; write true for {_OF_CHANGES[key]}, or leave it out")
+    return value
 
 
 def _corrections(name: str, entry: Mapping[str, Any]) -> Corrections:

@@ -101,6 +101,9 @@ def _check_kinds(columns: ColumnMap) -> None:
     """Refuse entries that cannot be of one file."""
     if columns.refines and columns.conditions:
         raise InputError("[columns]: has conditions in columns, so name the places of the others, too")
+    for name, source in columns.conditions.items():
+        if source.split and columns.joins:
+            raise InputError(f"[columns] conditions.{name}: split is of a run in one file; leave it out, or write mean = true")
     by_file: dict[str, set[str]] = {}
     for name, source in (columns.sources | columns.conditions).items():
         if source.key == "header" and not columns.refines:

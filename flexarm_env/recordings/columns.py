@@ -41,6 +41,7 @@ class Source:
         time: where that file has its time, whose parts are added; empty for the entry of the map.
         corrections: of a signal, in SI; of time the shift of all signals.
         mean: of a condition, whether it is the mean of a column whose numbers differ.
+        split: of a condition, whether the run is cut in recordings of their own where its number changes.
     """
 
     place: str | int | float
@@ -54,6 +55,7 @@ class Source:
     time: tuple[Source, ...] = ()
     corrections: Corrections = field(default_factory=Corrections)
     mean: bool = False
+    split: bool = False
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,8 @@ class ColumnMap:
         header_prefix: the header is the last of the leading lines that start with it; "" if it has no mark.
         skip_rows: lines to drop at the top.
         decimal: "." or ",".
-        conditions: the place of each condition that the file states as a column or variable of equal numbers, or of their mean.
+        conditions: the place of each condition that the file states as a column or variable: of equal numbers, of numbers whose
+            mean is wanted, or of those that change in steps, at which the run is cut.
         episodes: numbers of those that are read of a file with several; all where none is named.
         frame_rate: frames per second [Hz] of which the file counts the times; 0 where it states none.
         controller: the law under which the recordings were made, if it stands beside the map.

@@ -34,9 +34,11 @@ def episodes_of(table: Table, name: str, columns: ColumnMap | None) -> dict[str,
             raise InputError(f"row {start + 1}: episode {number} has one row; it needs at least two")
         begun[number] = start
         if columns is None or not columns.episodes or number in columns.episodes:
-            values = {column: numbers[start:stop] for column, numbers in table.values.items()}
+            columns_there = {column: values[start:stop] for column, values in table.values.items()}
             own = name if len(first) == 1 else f"{name} episode {number}"
-            found[own] = Table(values, table.sources, table.conditions, range(start + 1, stop + 1), notes=table.notes)
+            changing = {condition: values[start:stop] for condition, values in table.changing.items()}
+            lines = range(start + 1, stop + 1)
+            found[own] = Table(columns_there, table.sources, table.conditions, lines, changing=changing, notes=table.notes)
     return found
 
 

@@ -31,6 +31,8 @@ from flexarm_env.recordings.joined import read_joined, recording_files, run_name
 from flexarm_env.recordings.messages import file_error
 from flexarm_env.recordings.samples import samples_of
 from flexarm_env.recordings.sidecar import conditions_beside
+from flexarm_env.recordings.stretches import stretches_of
+from flexarm_env.recordings.table import Table
 from flexarm_env.sensors import known_sensors
 
 Floats = NDArray[np.float64]
@@ -197,6 +199,8 @@ class Recording(Shown):
             return found[0]
         layout = None if columns is None else load_columns(columns)
         check_episodes(len(found), layout, f"{path}: ")
+        if all(one.name.startswith(f"{Path(path).stem} part ") for one in found):
+            raise file_error(Path(path), f"is split in {len(found)} recordings by its conditions; read all by read_all")
         episodes = f"{len(found)} episodes, which are as many recordings"
         raise file_error(Path(path), f"has {episodes}; name one by episode_index in [columns], or read all by read_all")
 
@@ -208,7 +212,9 @@ class Recording(Shown):
         calibration: Mapping[str, float] | None = None,
         require_signal: bool = True,
     ) -> list[Recording]:
-        """Read the recordings in a file: one, or each episode of a LeRobot file that the map names. Arguments as `read`.
+        """Read the recordings in a file: one, or each episode that the map names, or each part of a run that it splits.
+
+        Arguments are those of `read`.
 
         Raises:
             InputError: as `read`.
@@ -227,10 +233,7 @@ class Recording(Shown):
                 layout = None if layout is None else with_info(path, layout)
                 tables = episodes_of(format_of(path).table(content, layout), path.stem, layout)
                 checksum = hashlib.sha256(content).hexdigest()
-                recordings = [
-                    _with_notes(_recording(name, table.in_si(gains), table.conditions, table.lines, table.sources), table.notes)
-                    for name, table in tables.items()
-                ]
+                recordings = [one for name, table in tables.items() for one in _stretches(name, table, gains)]
             for recording in recordings:
                 _check_signal(recording, require_signal, " to its header" if layout is None else " to [columns]")
         except InputError as error:
@@ -361,6 +364,12 @@ def _recording(
         conditions=conditions,
         notes=samples.notes,
     )
+
+
+def _stretches(name: str, table: Table, gains: Mapping[str, float]) -> list[Recording]:
+    """Make the recordings of a table: one, or one of each stretch between changes of its conditions."""
+    whole = _recording(name, table.in_si(gains), table.conditions, table.lines, table.sources)
+    return stretches_of(_with_notes(whole, table.notes), table.changing)
 
 
 def _with_notes(recording: Recording, notes: Sequence[str]) -> Recording:

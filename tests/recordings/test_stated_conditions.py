@@ -70,7 +70,7 @@ def test_a_mean_is_true_or_left_out_and_of_a_condition(tmp_path):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (TEXT.format(6, 6, 7), r"condition 'K1': 'P' is not one number throughout; cut the file"),
+        (TEXT.format(6, 6, 7), r"condition 'K1': 'P' is not one number throughout; write split = true"),
         (f"# K1 = 3\n{TEXT.format(6, 6, 6)}", "condition 'K1' comes twice"),
         (TEXT.format(6, "x", 6), "column 'K1'"),
         (TEXT.format(6, 6, 6).replace(",P,", ",Q,"), "column 'K1': no 'P'"),

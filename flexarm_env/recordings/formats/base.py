@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +11,7 @@ from flexarm_env.errors import InputError
 from flexarm_env.recordings.checks import as_vector
 from flexarm_env.recordings.columns import MADE, ColumnMap, Source, base_value
 from flexarm_env.recordings.messages import quoted
+from flexarm_env.recordings.stretches import held
 from flexarm_env.recordings.table import Table
 
 
@@ -77,27 +78,31 @@ class Format:
                 )
 
     def _with_conditions(self, content: bytes, columns: ColumnMap) -> Table:
-        """Read the columns of conditions beside the others; each must hold one number throughout, if its mean is not wanted."""
+        """Read the columns of conditions beside the others: one number throughout, a mean, or numbers that change in steps."""
         table = self.read(content, replace(columns, sources=columns.sources | columns.conditions))
         conditions, notes = dict(table.conditions), list(table.notes)
+        changing: dict[str, Sequence[float]] = {}
         for name, source in columns.conditions.items():
-            numbers = as_vector(name, table.values[name])
-            numbers = numbers[~np.isnan(numbers)]  # rows of other topics
-            place, differ = quoted(str(source.place)), len(numbers) and bool((numbers != numbers[0]).any())
-            if not len(numbers) or (differ and not source.mean):
-                raise InputError(
-                    f"condition '{name}': {place} is not one number throughout; cut the file in two where it changes, "
-                    f"or write mean = true"
-                )
             if name in conditions:
                 raise InputError(f"condition '{name}' comes twice, in [columns] and in the file's remarks; keep one of the two")
-            number = float(np.mean(numbers)) if differ else float(numbers[0])
+            numbers = as_vector(name, table.values[name])
+            known = numbers[~np.isnan(numbers)]  # not of the rows of other topics
+            place, differ = quoted(str(source.place)), len(known) and bool((known != known[0]).any())
+            if not len(known) or (differ and not (source.mean or source.split)):
+                raise InputError(
+                    f"condition '{name}': {place} is not one number throughout; write split = true for a recording of each of "
+                    f"its numbers, or mean = true"
+                )
+            if differ and source.split:
+                changing[name] = [base_value(number, source) for number in held(numbers).tolist()]
+                continue
+            number = float(np.mean(known)) if differ else float(known[0])
             if differ:
-                spread = f"{numbers.min():.4g} to {numbers.max():.4g}"
+                spread = f"{known.min():.4g} to {known.max():.4g}"
                 notes.append(f"condition '{name}' is the mean of {place}, {number:.4g} {source.unit} of {spread}")
             conditions[name] = base_value(number, source)
         values = {name: numbers for name, numbers in table.values.items() if name not in columns.conditions}
-        return replace(table, values=values, conditions=conditions, notes=tuple(notes))
+        return replace(table, values=values, conditions=conditions, changing=changing, notes=tuple(notes))
 
 
 def _with_made(table: Table, made: Mapping[str, Source]) -> Table:
