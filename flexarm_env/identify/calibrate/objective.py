@@ -18,6 +18,7 @@ from flexarm_env.identify.replay.readings import rms_of
 from flexarm_env.identify.replay.replay import replay
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.replay.start_bank import StartBank
+from flexarm_env.identify.replay.start_fit import StartFit
 from flexarm_env.identify.settings import FAILED_ERROR
 from flexarm_env.plant.plant import Plant
 
@@ -167,12 +168,23 @@ class Objective:
         errors = []
         for place, run in enumerate(runs):
             plant = plants[run.stated]
-            gains = self.observers.gains(arm, plant, run, dataset, self.torque_noise) if self.torque_noise > 0.0 else None
             start = self.starts.start(plant, run, place, dataset)
-            errors.append(run.errors(replay(plant, run, dataset, gains, start)))
+            errors.append(run.errors(self._readings(arm, plant, run, start)))
             if not judges_free_run:
                 errors[-1][: round(dataset.settings.preparation.settling / dataset.interval)] = 0.0
         return errors
+
+    def _readings(self, arm: Arm, plant: Plant, run: Run, start: StartFit) -> Floats:
+        """Replay a run (samples, signals); by an observer of the arm's own where the one that is kept makes it run away."""
+        dataset = self.dataset
+        if self.torque_noise == 0.0:
+            return replay(plant, run, dataset, None, start)
+        gains = self.observers.gains(arm, plant, run, dataset, self.torque_noise)
+        readings = replay(plant, run, dataset, gains, start)
+        if np.isfinite(readings[-1]).any():
+            return readings
+        own = observer_gains(arm, plant, dataset, self.torque_noise)
+        return readings if np.array_equal(own, gains) else replay(plant, run, dataset, own, start)
 
 
 def objective_at(arm: Arm, dataset: Dataset, parameters: FitParameters, torque_noise: float, reduced: bool = False) -> Objective:
