@@ -18,7 +18,6 @@ from flexarm_env.identify.replay.readings import rms_of
 from flexarm_env.identify.replay.replay import replay
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.replay.start_bank import StartBank
-from flexarm_env.identify.replay.start_fit import StartFit
 from flexarm_env.identify.settings import FAILED_ERROR
 from flexarm_env.plant.plant import Plant
 
@@ -90,6 +89,10 @@ class Objective:
         """Compute the residual of another arm under the same weights."""
         pairs = zip(self.errors_of(arm), self.weights.sigma, strict=True)
         return self._bounded([(error / sigma).ravel() for error, sigma in pairs])
+
+    def residual_by_own_observers(self, arm: Arm) -> Floats:
+        """Compute the residual of an arm whose values are not near those that the kept observers are designed for."""
+        return replace(self, observers=ObserverBank()).residual_of(arm)
 
     def held_out_residual_of(self, arm: Arm) -> Floats:
         """Compute the residual of another arm on the part held out, from observers of its own."""
@@ -168,23 +171,12 @@ class Objective:
         errors = []
         for place, run in enumerate(runs):
             plant = plants[run.stated]
+            gains = self.observers.gains(arm, plant, run, dataset, self.torque_noise) if self.torque_noise > 0.0 else None
             start = self.starts.start(plant, run, place, dataset)
-            errors.append(run.errors(self._readings(arm, plant, run, start)))
+            errors.append(run.errors(replay(plant, run, dataset, gains, start)))
             if not judges_free_run:
                 errors[-1][: round(dataset.settings.preparation.settling / dataset.interval)] = 0.0
         return errors
-
-    def _readings(self, arm: Arm, plant: Plant, run: Run, start: StartFit) -> Floats:
-        """Replay a run (samples, signals); by an observer of the arm's own where the one that is kept makes it run away."""
-        dataset = self.dataset
-        if self.torque_noise == 0.0:
-            return replay(plant, run, dataset, None, start)
-        gains = self.observers.gains(arm, plant, run, dataset, self.torque_noise)
-        readings = replay(plant, run, dataset, gains, start)
-        if np.isfinite(readings[-1]).any():
-            return readings
-        own = observer_gains(arm, plant, dataset, self.torque_noise)
-        return readings if np.array_equal(own, gains) else replay(plant, run, dataset, own, start)
 
 
 def objective_at(arm: Arm, dataset: Dataset, parameters: FitParameters, torque_noise: float, reduced: bool = False) -> Objective:

@@ -20,7 +20,7 @@ from flexarm_env.identify.calibrate.parameters import FitParameters
 from flexarm_env.identify.replay.density import Prediction, at_torque, best_readings, torque_levels
 from flexarm_env.identify.replay.forecast import FilteredStates, filtered_states
 from flexarm_env.identify.replay.forecast_spread import Leads
-from flexarm_env.identify.select.starts import changes_in_proportion, sized, starts_of
+from flexarm_env.identify.select.starts import changes_in_proportion, has_two_signs, sized, starts_of
 from flexarm_env.identify.settings import LEAST_NORM
 
 Floats = NDArray[np.float64]
@@ -144,7 +144,7 @@ def _promise(backgrounds: Sequence[Background], base: float, effect: str, start:
         def change_by(values: dict[str, float], background: Background = background) -> Floats:
             return background.change(arm.with_effect(effect, **values))
 
-        for begin, change in changes_in_proportion(arm, effect, start, change_by, left, settings.screening):
+        for begin, change in changes_in_proportion(arm, effect, start, change_by, background.left, settings.screening):
             power = float(change @ change)
             if power <= numbers.least_change * left**2 + LEAST_NORM:
                 continue
@@ -164,9 +164,8 @@ def _factors(arm: Arm, effect: str, suits: float, largest: float) -> list[float]
     known = arm.known[effect]
     if not known.fitted:
         return [1.0]
-    two_signs = known.parameters[known.size_parameter()].low < 0.0
     factor = float(np.clip(suits, -largest, largest))
-    return [1.0, factor] if two_signs or factor > 1.0 / largest else [1.0]
+    return [1.0, factor] if has_two_signs(known) or factor > 1.0 / largest else [1.0]
 
 
 def _turned(arm: Arm, effect: str, start: dict[str, float]) -> dict[str, float] | None:

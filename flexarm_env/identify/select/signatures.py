@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -16,7 +15,7 @@ from flexarm_env.identify.calibrate.least_squares import jacobian
 from flexarm_env.identify.calibrate.objective import Objective, ObserverBank, objective_at
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.scales import torque_scale
-from flexarm_env.identify.select.starts import Change, changes_in_proportion, sized, some_starts_of, starts_of
+from flexarm_env.identify.select.starts import Change, changes_in_proportion, has_two_signs, sized, some_starts_of, starts_of
 from flexarm_env.identify.settings import Screening
 
 Floats = NDArray[np.float64]
@@ -72,7 +71,11 @@ class Baseline:
 
     def change(self, effect: str, values: dict[str, float]) -> Floats:
         """Compute the change of the residual (rows,) that an effect makes."""
-        return self.objective.residual_of(self.arm.with_effect(effect, **values)) - self.residual
+        return self.residual_with(effect, values) - self.residual
+
+    def residual_with(self, effect: str, values: dict[str, float]) -> Floats:
+        """Compute the residual (rows,) of the arm with an effect; starts are so far apart that each has observers of its own."""
+        return self.objective.residual_by_own_observers(self.arm.with_effect(effect, **values))
 
 
 @dataclass(frozen=True)
@@ -160,13 +163,12 @@ def promising(bases: Sequence[Baseline], effect: str, briefly: bool = False) -> 
 def _secants(base: Baseline, effect: str, briefly: bool) -> list[Signature]:
     """Extrapolate what an effect explains from each of its starts; of few, briefly."""
     left, find = base.left, some_starts_of if briefly else starts_of
-    size = math.sqrt(base.left_square)
 
     def change_by(values: dict[str, float]) -> Floats:
         return base.unexplained(base.change(effect, values))
 
     starts = find(base.arm, effect, base.objective.dataset)
-    tried = (changes_in_proportion(base.arm, effect, start, change_by, size, base.numbers) for start in starts)
+    tried = (changes_in_proportion(base.arm, effect, start, change_by, left, base.numbers) for start in starts)
     changes = [change for of_start in tried for change in of_start]
     found = [_secant(base, effect, start, change, left) for start, change in changes]
     return found + _with_phases_between(base, effect, changes, left)
@@ -239,10 +241,10 @@ def _factors(base: Baseline, signature: Signature) -> tuple[float, ...]:
     effect, sizes = base.arm.known[signature.effect], base.numbers.sizes
     if not effect.fitted:
         return (1.0,)
-    return (*sizes, *(-size for size in sizes)) if effect.parameters[effect.size_parameter()].low < 0.0 else sizes
+    return (*sizes, *(-size for size in sizes)) if has_two_signs(effect) else sizes
 
 
 def _at_size(base: Baseline, signature: Signature, factor: float) -> Signature:
     values = sized(base.arm, signature.effect, signature.start, factor)
-    left = base.square_unexplained(base.objective.residual_of(base.arm.with_effect(signature.effect, **values)))
+    left = base.square_unexplained(base.residual_with(signature.effect, values))
     return Signature(signature.effect, values, 1.0 - left / base.left_square)

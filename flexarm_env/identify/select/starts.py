@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
+from flexarm_env.effects.base import Effect
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.select.followed import follows_sine
 from flexarm_env.identify.settings import Screening
@@ -86,29 +87,39 @@ def changes_in_proportion(
     effect: str,
     start: dict[str, float],
     change: Callable[[dict[str, float]], NDArray[np.float64]],
-    left: float,
+    left: NDArray[np.float64],
     numbers: Screening,
 ) -> list[Change]:
     """Try a start, and smaller sizes as long as the change that it makes is out of proportion to the errors.
 
-    Where friction holds an arm that moves freely, or a delay exceeds a period, the change says nothing of small sizes.
+    Where friction holds an arm that moves freely, or a delay exceeds a period, the change says nothing of small sizes. Nor does
+    it where it makes the errors larger, unless it is small itself: a vibration that became slower by too much is as wrong as
+    before.
 
     Args:
         arm: without the effect.
         effect: its name.
         start: its values.
         change: computes the change (rows,) of the errors by the effect's values.
-        left: Euclidean norm of the errors.
+        left: (rows,) the errors.
         numbers: of the screening.
     """
-    found: list[Change] = []
+    known, errors, found = arm.known[effect], float(np.linalg.norm(left)), list[Change]()
+    one_way = not (has_two_signs(known) or known.scan_phase)
     for _ in range(numbers.shrinks):
         found.append((start, change(start)))
         size = float(np.linalg.norm(found[-1][1]))
-        if left >= numbers.in_proportion * size or not arm.known[effect].fitted:
+        far = errors < numbers.in_proportion * size
+        worse = one_way and size > numbers.in_proportion * errors and float(found[-1][1] @ left) > 0.0
+        if not (far or worse) or not known.fitted:
             break
-        start = sized(arm, effect, start, left / size)
+        start = sized(arm, effect, start, errors / size if far else numbers.in_proportion)
     return found
+
+
+def has_two_signs(effect: type[Effect]) -> bool:
+    """Whether the size of a fitted effect may be negative."""
+    return effect.fitted and effect.parameters[effect.size_parameter()].low < 0.0
 
 
 def sized(arm: Arm, effect: str, start: Mapping[str, float], factor: float) -> dict[str, float]:
