@@ -13,6 +13,7 @@ from flexarm_env.identify.calibrate.intervals import estimates
 from flexarm_env.identify.explain.budget import Budget, budget, budget_notes, rest_notes, torque_notes
 from flexarm_env.identify.explain.detection_limits import detection_limits
 from flexarm_env.identify.explain.error_steps import ErrorStep, error_steps
+from flexarm_env.identify.explain.moved_constants import moved_notes
 from flexarm_env.identify.explain.probability import probabilities
 from flexarm_env.identify.explain.unexplained_torque import unexplained_torque
 from flexarm_env.identify.inspect.fault import Fault
@@ -78,7 +79,7 @@ def conclude(
         arm=corrected,
         nominal=arm,
         refitted=base.arm,
-        notes=_notes(verdict, steps, shares, calibrator.settings),
+        notes=[*_notes(verdict, steps, shares, calibrator.settings), *moved_notes(final, calibrator.settings.explaining)],
         trace=trace.as_json(),
         settings=calibrator.settings,
         seed=seed,

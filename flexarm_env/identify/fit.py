@@ -12,6 +12,7 @@ from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.calibrate.intervals import estimates
 from flexarm_env.identify.calibrate.parameters import free_parameters
+from flexarm_env.identify.explain.moved_constants import moved_notes
 from flexarm_env.identify.origin import with_origin
 from flexarm_env.identify.progress import Progress, ProgressCallback
 from flexarm_env.identify.replay.dataset import prepare
@@ -79,7 +80,7 @@ def fit(
         seconds=time.perf_counter() - began,
         settings=settings,
         closed_loop=closed_loop_errors({"nominal": nominal, "refitted": found.arm}, calibrator.dataset),
-        notes=[*dataset.notes, *hold_out_notes(calibrator.dataset)],
+        notes=[*dataset.notes, *hold_out_notes(calibrator.dataset), *moved_notes(final, settings.explaining)],
     )
 
 
@@ -143,7 +144,7 @@ def add(
         seconds=time.perf_counter() - began,
         settings=settings,
         closed_loop=closed_loop_errors(dict(zip(names, arms, strict=True)), calibrator.dataset),
-        notes=[*dataset.notes, *hold_out_notes(calibrator.dataset)],
+        notes=[*dataset.notes, *hold_out_notes(calibrator.dataset), *moved_notes(final, settings.explaining)],
     )
 
 

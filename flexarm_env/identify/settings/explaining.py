@@ -100,6 +100,7 @@ class Explaining:
     least_noise: float = tuned(1e-6, "Noise on every state over that of the torque, so that all stay open to correction.")
     settling: float = tuned(0.2, "Time at both ends in which the smoother still depends on its start.", unit="s")
     rank: float = tuned(1e-14, "Relative singular value below which the smoother's covariance is singular.", "machine precision")
+    moved_far: float = tuned(3.0, "A constant that a fit moves by more of its prior's standard deviations is told.")
     moving: float = tuned(0.01, "The hub counts as moving above this share of its largest speed.")
     slowest: float = tuned(1e-6, "Speed at which a law's curve begins.", unit="rad/s")
     bins: int = tuned(32, "Bins of a curve.")
