@@ -54,11 +54,10 @@ def test_a_start_is_shrunk_until_its_change_points_to_the_errors_or_is_small(tim
     assert all(later < earlier for earlier, later in pairwise(sizes))
     for _, change in tried[:-1]:  # each but the last called for a smaller one
         ratio = float(np.linalg.norm(change) / np.linalg.norm(left))
-        assert ratio > 1.0 / NUMBERS.in_proportion or (ratio > NUMBERS.in_proportion and change @ left > 0.0)
+        assert ratio > 1.0 / NUMBERS.in_proportion or (ratio > 1.0 and change @ left > 0.0)
     if len(tried) < NUMBERS.shrinks:
         last = tried[-1][1]
-        small = np.linalg.norm(last) <= NUMBERS.in_proportion * np.linalg.norm(left)
-        assert small or last @ left <= 0.0
+        assert np.linalg.norm(last) <= np.linalg.norm(left) or last @ left <= 0.0
 
 
 def test_a_size_that_turns_by_most_of_a_period_is_followed_by_one_that_explains_the_errors():

@@ -93,8 +93,7 @@ def changes_in_proportion(
     """Try a start, and smaller sizes as long as the change that it makes is out of proportion to the errors.
 
     Where friction holds an arm that moves freely, or a delay exceeds a period, the change says nothing of small sizes. Nor does
-    it where it makes the errors larger, unless it is small itself: a vibration that became slower by too much is as wrong as
-    before.
+    it where it is larger than the errors and enlarges them: a vibration that became slower by too much is as wrong as before.
 
     Args:
         arm: without the effect.
@@ -110,7 +109,7 @@ def changes_in_proportion(
         found.append((start, change(start)))
         size = float(np.linalg.norm(found[-1][1]))
         far = errors < numbers.in_proportion * size
-        worse = one_way and size > numbers.in_proportion * errors and float(found[-1][1] @ left) > 0.0
+        worse = one_way and size > errors and float(found[-1][1] @ left) > 0.0
         if not (far or worse) or not known.fitted:
             break
         start = sized(arm, effect, start, errors / size if far else numbers.in_proportion)

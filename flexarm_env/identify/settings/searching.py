@@ -25,8 +25,7 @@ class Screening:
     sizes: tuple[float, ...] = tuned((0.15, 0.4, 0.75, 1.2, 2.5), "Factors of the size that are scanned.")
     in_proportion: float = tuned(
         0.3,
-        "Residual over the change that an effect makes, below which the effect is tried at a smaller size, too; and change over "
-        "residual up to which a change for the worse is believed.",
+        "Residual over the change that an effect makes: below it the effect is tried at a smaller size, too.",
         "a size within three of the right one is reached by the secant; no sweep recorded",
     )
     shrinks: int = tuned(4, "Sizes of a start that are tried at most.", "friction of 1e-5 of what holds an arm takes three")
