@@ -199,7 +199,7 @@ class Recording(Shown):
             return found[0]
         layout = None if columns is None else load_columns(columns)
         check_episodes(len(found), layout, f"{path}: ")
-        if all(one.name.startswith(f"{Path(path).stem} part ") for one in found):
+        if layout is not None and any(source.split for source in layout.conditions.values()):
             raise file_error(Path(path), f"is split in {len(found)} recordings by its conditions; read all by read_all")
         episodes = f"{len(found)} episodes, which are as many recordings"
         raise file_error(Path(path), f"has {episodes}; name one by episode_index in [columns], or read all by read_all")

@@ -1,4 +1,4 @@
-"""A constant that a fit moves further than it may be off is told, as of a motor whose datum is wrong."""
+"""A constant that a fit moves far from its prior is told, as of a motor whose datum is wrong."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def turned(factor: float) -> list[Recording]:
 
 
 @pytest.mark.parametrize(("factor", "told"), [(1.1, False), (4.0, True)])
-def test_a_constant_that_moved_further_than_it_may_be_off_is_told(factor, told):
+def test_a_constant_that_moved_far_from_its_prior_is_told(factor, told):
     arm = Arm.load("cu-rigid")
     found = fit(arm, turned(factor), jobs=1)
     notes = [note for note in found.notes if note.startswith("hub.inertia moved by ")]

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy.io
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -103,6 +104,17 @@ def test_a_split_is_true_and_stands_alone(tmp_path, entry, words):
     columns = COLUMNS | {"conditions": {"load": {"column": "m", "unit": "g"} | entry}}
     with pytest.raises(InputError, match=words):
         read_all(tmp_path, text_of([1, 1]), columns)
+
+
+def test_a_condition_has_a_number_of_each_sample(tmp_path):
+    scipy.io.savemat(tmp_path / "run.mat", {"t": [0.0, 0.1, 0.2], "i": [1.0, 1.0, 1.0], "q": [0.0, 1.0, 2.0], "on": [1.0, 0.0]})
+    columns = {name: {"variable": place, "unit": unit} for name, place, unit in (("time", "t", "s"), ("current", "i", "A"))}
+    columns |= {
+        "arm_angle": {"variable": "q", "unit": "rad"},
+        "conditions": {"on": {"variable": "on", "unit": "1", "split": True}},
+    }
+    with pytest.raises(InputError, match="condition 'on': 'on' has 2 numbers for 3 samples; leave split out"):
+        Recording.read_all(tmp_path / "run.mat", columns)
 
 
 def test_a_run_in_several_files_is_not_split(tmp_path):

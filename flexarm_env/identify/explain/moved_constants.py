@@ -1,4 +1,4 @@
-"""Constants that a fit moved further than they may be off."""
+"""Constants that a fit moved far from their priors."""
 
 from __future__ import annotations
 
@@ -21,8 +21,6 @@ def moved_notes(found: Calibration, numbers: Explaining) -> list[str]:
         if parameter.is_constant and deviations > numbers.moved_far:
             unit = found.arm.parameter(parameter.path).unit
             ends = f"{parameter.origin:.3g} → {parameter.value(x):.3g} {unit}".rstrip()
-            notes.append(
-                f"{parameter.path} moved by {deviations:.1f} times what it may be off ({ends}): check its value, and those of the"
-                " constants that a fit leaves alone"
-            )
+            moved = f"{parameter.path} moved by {deviations:.1f} standard deviations of its prior ({ends})"
+            notes.append(f"{moved}: check its value, and those of the constants that a fit leaves alone")
     return notes

@@ -94,6 +94,11 @@ class Format:
                     f"its numbers, or mean = true"
                 )
             if differ and source.split:
+                samples = max(len(table.values[column]) for column in columns.sources)
+                if len(numbers) != samples:
+                    raise InputError(
+                        f"condition '{name}': {place} has {len(numbers)} numbers for {samples} samples; leave split out"
+                    )
                 changing[name] = [base_value(number, source) for number in held(numbers).tolist()]
                 continue
             number = float(np.mean(known)) if differ else float(known[0])
