@@ -20,6 +20,8 @@ from flexarm_env.sensors import known_sensors
 # Possessive, so that no cell takes time that grows faster than its length.
 _DECIMAL_COMMA = re.compile(r"\s*+[+-]?+\d++,\d++\s*+")
 _COMMA_AND_THREE = re.compile(r"\s*+[+-]?+[1-9]\d{0,2}+(?:,\d{3})++\s*+")
+#: Of a condition, such as whether the torque of a servo is enabled.
+_TRUTH = {"true": "1", "false": "0"}
 _DATE = re.compile(r"\s*+\d{1,2}[/.-]\d{1,2}[/.-]\d{2,4}[T ]")
 
 
@@ -163,6 +165,8 @@ def _row_by_row(
             hint = _width_hint(row, len(cells), width, layout.delimiter)
             raise InputError(f"{where}: has {len(cells)} cells where {width} are expected; {hint}")
         for index, name in labels.items():
+            if name in layout.conditions:
+                cells[index] = _TRUTH.get(cells[index].strip().lower(), cells[index])
             absent = _may_be_absent(name) and _is_absent(cells[index])
             if not absent and not is_number(cells[index], layout.decimal):
                 raise InputError(f"{where}, column '{name}': {_not_a_number(cells[index])}")

@@ -73,6 +73,14 @@ def test_an_angle_is_unwrapped_over_the_whole_run(tmp_path):
     assert found[1].signals["arm_angle"] == pytest.approx([2 * math.pi - 3.1, 2 * math.pi - 3.0])
 
 
+def test_true_and_false_of_a_condition_are_one_and_zero_and_of_a_signal_no_numbers(tmp_path):
+    text = "t,i,phi,m\n0,0,0,True\n0.1,1,0,true\n0.2,1,0, FALSE\n0.3,1,0,False\n"
+    columns = COLUMNS | {"conditions": {"on": {"column": "m", "unit": "1", "split": True}}}
+    assert [one.conditions["on"] for one in read_all(tmp_path, text, columns)] == [1.0, 0.0]
+    with pytest.raises(InputError, match="row 2, column 'arm_angle': 'True' is not a number"):
+        read_all(tmp_path, "t,i,phi,m\n0,0,True,1\n0.1,1,False,1\n", columns)
+
+
 def test_a_stretch_of_one_sample_or_without_a_reading_is_left_out(tmp_path):
     found = read_all(tmp_path, text_of([1, 1, 0, 2, 2]))
     assert [one.name for one in found] == ["run part 1", "run part 3"]
