@@ -55,7 +55,8 @@ def stretches_of(recording: Recording, changing: Mapping[str, Sequence[float]]) 
         )
     found = []
     for number, (start, stop) in enumerate(zip(starts, [*starts[1:], len(recording)], strict=True), 1):
-        if stop - start < 2 or not any(np.isfinite(values[start:stop]).any() for values in recording.signals.values()):
+        is_read = not recording.signals or any(np.isfinite(values[start:stop]).any() for values in recording.signals.values())
+        if stop - start < 2 or not is_read:
             continue
         part = recording.part(float(recording.time[start]), float(recording.time[stop]) if stop < len(recording) else None)
         conditions = {name: numbers[start] for name, numbers in changing.items()}

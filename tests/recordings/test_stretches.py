@@ -27,8 +27,6 @@ COLUMNS = {
     "arm_angle": {"column": "phi", "unit": "rad"},
     "conditions": {"load": {"column": "m", "unit": "g", "split": True}},
 }
-
-
 LOAD = {"payload": 0.49}
 
 
@@ -88,6 +86,12 @@ def test_a_stretch_of_one_sample_or_without_a_reading_is_left_out(tmp_path):
     assert [one.name for one in read_all(tmp_path, rows)] == ["run part 1"]
 
 
+def test_commands_alone_are_cut_too(tmp_path):
+    columns = {name: entry for name, entry in COLUMNS.items() if name != "arm_angle"}
+    (tmp_path / "run.csv").write_text(text_of([1, 1, 0, 0]))
+    assert len(Recording.read_all(tmp_path / "run.csv", columns, require_signal=False)) == 2
+
+
 @pytest.mark.parametrize(
     ("loads", "words"),
     [
@@ -121,7 +125,7 @@ def test_a_condition_has_a_number_of_each_sample(tmp_path):
         "arm_angle": {"variable": "q", "unit": "rad"},
         "conditions": {"on": {"variable": "on", "unit": "1", "split": True}},
     }
-    with pytest.raises(InputError, match="condition 'on': 'on' has 2 numbers for 3 samples; leave split out"):
+    with pytest.raises(InputError, match="condition 'on': 'on' has 2 numbers for 3 samples; write mean = true"):
         Recording.read_all(tmp_path / "run.mat", columns)
 
 

@@ -103,7 +103,8 @@ def changes_in_proportion(
         left: (rows,) the errors.
         numbers: of the screening.
     """
-    known, errors, found = arm.known[effect], float(np.linalg.norm(left)), list[Change]()
+    found: list[Change] = []
+    known, errors = arm.known[effect], float(np.linalg.norm(left))
     one_way = not (has_two_signs(known) or known.scan_phase)
     for _ in range(numbers.shrinks):
         found.append((start, change(start)))

@@ -97,7 +97,7 @@ class Format:
                 samples = max(len(table.values[column]) for column in columns.sources)
                 if len(numbers) != samples:
                     raise InputError(
-                        f"condition '{name}': {place} has {len(numbers)} numbers for {samples} samples; leave split out"
+                        f"condition '{name}': {place} has {len(numbers)} numbers for {samples} samples; write mean = true"
                     )
                 changing[name] = [base_value(number, source) for number in held(numbers).tolist()]
                 continue
