@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+import flexarm_env.identify.calibrate.calibrator as module
 from flexarm_env import Arm, simulate
 from flexarm_env.identify.calibrate.calibration import Calibration
 from flexarm_env.identify.calibrate.calibrator import Calibrator
@@ -43,3 +46,20 @@ def test_far_off_the_end_of_least_error_is_the_last_and_as_uncertain_as_it_moved
     assert errors[2] <= errors[1]
     moved = np.abs(finished.parameters.position(found.arm) - finished.solution.x)
     assert np.all(finished.moved >= moved)
+
+
+def test_far_off_a_calibration_that_ends_worse_is_not_taken(monkeypatch):
+    calibrator, found = calibrated(Arm.load("thesis").with_effect("cable_stiffness", stiffness=1.5))
+    refine, ends = module.refine, []
+
+    def refine_badly(objective, x):
+        refined = refine(objective, x)
+        ends.append(refined.x + 2.0 * found.parameters.priors)
+        return replace(refined, x=ends[-1])
+
+    monkeypatch.setattr(module, "refine", refine_badly)
+    kept = calibrator.calibrate_on_all_data(found)
+    assert largest_error(calibrator, found.arm) > SETTINGS.errors.far_off
+    assert largest_error(calibrator, kept.arm) == largest_error(calibrator, found.arm)
+    assert kept.arm == found.arm
+    assert np.all(kept.moved >= np.abs(ends[0] - found.parameters.position(found.arm)))

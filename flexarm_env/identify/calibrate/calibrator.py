@@ -234,8 +234,8 @@ class Calibrator:
     def calibrate_on_all_data(self, found: Calibration) -> Calibration:
         """Continue a calibration on all of the data and refine it: the final result, once no choice of model is left.
 
-        Where errors are rough, as those of a gap, it may lose what explained the data. Then the constants stay, and are as
-        uncertain as the two ends are apart.
+        Where errors are rough, as those of a gap, or an effect is missing, it may end worse. Then the constants stay, and are
+        as uncertain as the two ends are apart.
         """
         numbers, parameters = self.settings.calibrating, found.parameters
         objective = objective_at(found.arm, self.dataset.nothing_held_out(), parameters, found.objective.torque_noise)
@@ -248,7 +248,9 @@ class Calibrator:
         refined = refine(objective, solution.x)
         moved, at = np.hypot(solution.x - x, refined.scatter), replace(solution, x=refined.x, residual=refined.residual)
         again = Calibration(parameters.apply(found.arm, refined.x), at, objective, moved, refined.jacobian)
-        if not self._error_on_all_data(found.arm) <= self.settings.errors.explained < self._error_on_all_data(again.arm):
+        before, after = (self._error_on_all_data(arm) for arm in (found.arm, again.arm))
+        errors, worse = self.settings.errors, 1.0 + self.settings.selecting.noticed
+        if after <= errors.explained or before > errors.explained and after <= worse * before:
             return again
         stayed = replace(solution, x=x, residual=objective.residual(x))
         return replace(again, arm=found.arm, solution=stayed, moved=np.hypot(refined.x - x, refined.scatter))

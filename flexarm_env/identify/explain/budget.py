@@ -110,7 +110,7 @@ def torque_notes(found: Budget, effects: Sequence[str]) -> list[str]:
         return []
     causes = {"nominal": "as given", "constants": "constants refitted", "final": f"with {' and '.join(effects)}"}
     parts = [f"{torque:.2g} ({causes[name]})" for name, torque in known.items()]
-    return [f"unexplained torque on the moving hub, rms with the noise of its estimate: {' → '.join(parts)} Nm"]
+    return [f"unexplained torque on the hub in fast motion, rms: {' → '.join(parts)} Nm"]
 
 
 def _worse(step: ErrorStep, settings: Settings) -> Iterator[str]:

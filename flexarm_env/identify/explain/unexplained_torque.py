@@ -12,10 +12,11 @@ from flexarm_env.identify.replay.dataset import Dataset
 
 
 def unexplained_torque(arm: Arm, dataset: Dataset) -> float:
-    """Compute the rms torque [Nm] on the moving hub, estimated from the recordings, less that of the arm's effects.
+    """Compute the rms torque [Nm] on the hub, estimated from the recordings, less that of the arm's effects.
 
-    It is NaN where no torque can be estimated: nothing moves, sampling is uneven, or the sensors do not show the hub. It holds
-    the noise of the sensors, and therefore does not fall to 0.
+    It is that of fast motion, where the direction of friction is certain, and a moving mean, which holds less of the noise of
+    the sensors. It is NaN where no torque can be estimated: nothing moves, sampling is uneven, or the sensors do not show the
+    hub.
 
     Args:
         arm: with its effects, and the sensors of the dataset.
@@ -26,11 +27,15 @@ def unexplained_torque(arm: Arm, dataset: Dataset) -> float:
     except np.linalg.LinAlgError:  # no steady filter: the sensors do not see the hub
         return math.nan
     names = [name for name in arm.effects if acts_on_hub(arm, name)]
+    numbers = dataset.settings.explaining
     fastest = max((float(np.abs(one.speed).max(initial=0.0)) for one in motions), default=0.0)
+    window = np.ones(2 * int(numbers.smoothing / dataset.interval) + 1)
     left = []
     for one in motions:
-        moves = np.abs(one.speed) > dataset.settings.explaining.moving * fastest
-        law = law_torque(arm, names, one.angle[moves], one.speed[moves], one.time[moves])
-        left.append(one.torque[moves] - law)
+        moves = np.abs(one.speed) > numbers.fast * fastest
+        rest = np.zeros(len(moves))
+        rest[moves] = one.torque[moves] - law_torque(arm, names, one.angle[moves], one.speed[moves], one.time[moves])
+        sums, counts = (np.convolve(values, window)[len(window) // 2 :][: len(moves)] for values in (rest, moves))
+        left.append(sums[moves] / counts[moves])
     every = np.concatenate([np.zeros(0), *left])
     return float(np.sqrt(np.mean(every**2))) if len(every) else math.nan
