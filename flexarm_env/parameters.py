@@ -38,6 +38,7 @@ class Parameter:
         high: upper bound.
         typical: usual size in the thesis's arm, where a search starts.
         null: value at which the effect is absent; None where no single value means absence.
+        onset: value below which one that is absent at infinity begins to act, in a recording of the typical size.
         spread: relative standard deviation of the prior around the value of the arm file. 0 keeps the value; infinity, the
             default of an effect's parameter, is no prior.
         meaning: description in one line.
@@ -57,6 +58,7 @@ class Parameter:
     high: float
     typical: float
     null: float | None = None
+    onset: float = float("inf")
     spread: float = float("inf")
     meaning: str = ""
     source: str = ""
@@ -71,6 +73,28 @@ class Parameter:
             scales: factors by unit, "command" for commands and "travel" for places; 1 where the unit is missing.
         """
         return scales.get("command" if self.of_command else "travel" if self.of_travel else self.unit, 1.0)
+
+    def times(self, value: float, factor: float, scales: Mapping[str, float]) -> float:
+        """Make a size so many times larger, within the bounds.
+
+        A limit is the larger the more of what it limits lies beyond it: the difference of its reciprocal from that of its onset.
+
+        Args:
+            value: of the parameter, whose null is 0 or infinity.
+            factor: at least 0 where the null is infinity.
+            scales: as of `scaled_by`.
+
+        Example:
+            >>> limit = Parameter("A", 0.0, math.inf, 3.0, null=math.inf, onset=5.0)
+            >>> [round(limit.times(4.0, factor, {}), 3) for factor in (0.0, 0.5, 2.0)]
+            [5.0, 4.444, 3.333]
+        """
+        if self.null != math.inf:
+            return min(max(value * factor, self.low), self.high)
+        onset = self.onset * self.scaled_by(scales)
+        least = 1.0 / onset if value < onset else 0.0
+        reciprocal = least + factor * (1.0 / value - least)
+        return min(max(1.0 / reciprocal if reciprocal > 0.0 else math.inf, self.low), self.high)
 
     def under(self, command: str) -> Parameter:
         """Fill in the unit of a command, which the catalogue leaves open.

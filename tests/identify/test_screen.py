@@ -97,7 +97,7 @@ def test_a_start_that_leaves_values_out_has_typical_ones(arm):
     _, data = seen_by(arm, arm)
     start = first_start(known, "shaped", replace(data, scales={}))
     assert start == {"stiffness": 0.1, "start": 0.3}
-    assert sized(known, "shaped", start, 0.5) == {"stiffness": 0.05, "start": 0.3}
+    assert sized(known, "shaped", start, 0.5, data) == {"stiffness": 0.05, "start": 0.3}
     shapes = [start["start"] for start in starts_of(known, "shaped", replace(data, scales={"rad": 2.0}))]
     assert shapes == [0.6, 0.8, 1.0]  # in the scale of the data, within the bounds
 
@@ -108,10 +108,11 @@ def test_a_start_that_leaves_values_out_has_typical_ones(arm):
         ("coulomb", {"torque": 0.1}, 3.0, {"torque": pytest.approx(0.3)}),
         ("load_friction", {"coefficient": 0.5}, 10.0, {"coefficient": 0.95}),
         ("constant_torque", {"torque": 0.1}, -2.0, {"torque": -0.2}),
-        ("saturation", {"limit": 3.0}, 2.0, {"limit": 1.5}),  # absent at infinity
+        ("saturation", {"limit": 3.0}, 2.0, {"limit": pytest.approx(15.0 / 7.0)}),  # absent from the peak on
         ("gear_compliance", {"stiffness": 200.0, "damping_time": 1e-3}, 4.0, {"stiffness": 50.0, "damping_time": 1e-3}),
         ("stribeck", {"extra": 0.2, "falloff_speed": 0.3}, 0.5, {"extra": 0.1, "falloff_speed": 0.3}),
     ],
 )
 def test_an_effect_so_many_times_larger(arm, name, start, factor, larger):
-    assert sized(arm, name, start, factor) == larger
+    _, data = seen_by(arm, arm)
+    assert sized(arm, name, start, factor, replace(data, scales={})) == larger

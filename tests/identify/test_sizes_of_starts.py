@@ -15,10 +15,10 @@ from flexarm_env.identify.calibrate.objective import ObserverBank, objective_at
 from flexarm_env.identify.calibrate.parameters import free_parameters
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.select.starts import changes_in_proportion
-from flexarm_env.identify.settings import SETTINGS
 
-NUMBERS = SETTINGS.screening
 ARM = Arm.load("thesis-fem")
+DATA = prepare(ARM, [simulate(ARM, "pulse", duration=4.0)])[1]
+NUMBERS = DATA.settings.screening
 
 
 def late_by(size: float) -> np.ndarray:
@@ -29,8 +29,7 @@ def late_by(size: float) -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def objective():
-    nominal, data = prepare(ARM, [simulate(ARM, "pulse", duration=4.0)])
-    return objective_at(nominal, data, free_parameters(nominal, nominal, data), 0.002, reduced=True)
+    return objective_at(ARM, DATA, free_parameters(ARM, ARM, DATA), 0.002, reduced=True)
 
 
 def test_an_observer_for_a_large_start_does_not_judge_a_small_one(objective):
@@ -47,7 +46,7 @@ def test_an_observer_for_a_large_start_does_not_judge_a_small_one(objective):
 def test_a_start_is_shrunk_until_its_change_points_to_the_errors_or_is_small(times):
     left = -late_by(1e-3)
     tried = changes_in_proportion(
-        ARM, "tip_inertia", {"inertia": 1e-3 * times}, lambda values: late_by(values["inertia"]), left, NUMBERS
+        ARM, "tip_inertia", {"inertia": 1e-3 * times}, lambda values: late_by(values["inertia"]), left, DATA
     )
     sizes = [values["inertia"] for values, _ in tried]
     assert sizes[0] == 1e-3 * times
@@ -63,7 +62,7 @@ def test_a_start_is_shrunk_until_its_change_points_to_the_errors_or_is_small(tim
 def test_a_size_that_turns_by_most_of_a_period_is_followed_by_one_that_explains_the_errors():
     left = -late_by(1e-3)
     (_, first), (values, last) = changes_in_proportion(
-        ARM, "tip_inertia", {"inertia": 5e-3}, lambda values: late_by(values["inertia"]), left, NUMBERS
+        ARM, "tip_inertia", {"inertia": 5e-3}, lambda values: late_by(values["inertia"]), left, DATA
     )
     assert first @ left > 0.0
     assert values["inertia"] == pytest.approx(5e-3 * NUMBERS.in_proportion)
@@ -73,5 +72,5 @@ def test_a_size_that_turns_by_most_of_a_period_is_followed_by_one_that_explains_
 def test_an_effect_of_two_signs_is_taken_at_its_word():
     """A change for the worse means the other sign there."""
     left = np.array([1.0, -1.0])
-    tried = changes_in_proportion(ARM, "constant_torque", {"torque": 1.0}, lambda _: left, left, NUMBERS)
+    tried = changes_in_proportion(ARM, "constant_torque", {"torque": 1.0}, lambda _: left, left, DATA)
     assert len(tried) == 1

@@ -250,7 +250,7 @@ class Calibrator:
         again = Calibration(parameters.apply(found.arm, refined.x), at, objective, moved, refined.jacobian)
         before, after = (self._error_on_all_data(arm) for arm in (found.arm, again.arm))
         errors, worse = self.settings.errors, 1.0 + self.settings.selecting.noticed
-        if after <= errors.explained or before > errors.explained and after <= worse * before:
+        if after <= errors.explained or (before > errors.explained and after <= worse * before):
             return again
         stayed = replace(solution, x=x, residual=objective.residual(x))
         return replace(again, arm=found.arm, solution=stayed, moved=np.hypot(refined.x - x, refined.scatter))

@@ -49,7 +49,7 @@ class EffectSize:
     @property
     def values(self) -> dict[str, float]:
         """Parameters at this multiple."""
-        return sized(self.base.arm, self.name, self.start, self.multiple)
+        return sized(self.base.arm, self.name, self.start, self.multiple, self.base.objective.dataset)
 
     @property
     def value(self) -> float:

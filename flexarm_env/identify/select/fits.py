@@ -159,7 +159,7 @@ def _start_smaller(
     names = list(fits)
     for share in calibrator.settings.screening.small:
         worse = [n for n in names if fits[n][0] > most]
-        small = [(n, sized(reset, n, first_start(reset, n, dataset), share)) for n in worse]
+        small = [(n, sized(reset, n, first_start(reset, n, dataset), share, dataset)) for n in worse]
         again = _fit_briefly(calibrator, [(n, reset.with_effect(n, **start)) for n, start in small], progress)
         fits = fits | {n: min(fit, fits[n], key=lambda f: f[0]) for n, fit in again.items()}
     return fits

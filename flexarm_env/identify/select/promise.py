@@ -135,8 +135,8 @@ def _background(parameters: FitParameters, prediction: Prediction) -> Background
 
 def _promise(backgrounds: Sequence[Background], base: float, effect: str, start: dict[str, float]) -> Promise:
     """Estimate the promise of an effect from one of its starts."""
-    arm, settings = backgrounds[0].prediction.arm, backgrounds[0].prediction.dataset.settings
-    numbers = settings.promising
+    arm, dataset = backgrounds[0].prediction.arm, backgrounds[0].prediction.dataset
+    numbers = dataset.settings.promising
     best = Promise(effect, start, base, 0.0, backgrounds[0].prediction.disturbances.torque, backgrounds[0].slopes)
     for background in backgrounds:
         left = float(np.linalg.norm(background.left))
@@ -144,7 +144,7 @@ def _promise(backgrounds: Sequence[Background], base: float, effect: str, start:
         def change_by(values: dict[str, float], background: Background = background) -> Floats:
             return background.change(arm.with_effect(effect, **values))
 
-        for begin, change in changes_in_proportion(arm, effect, start, change_by, background.left, settings.screening):
+        for begin, change in changes_in_proportion(arm, effect, start, change_by, background.left, dataset):
             power = float(change @ change)
             if power <= numbers.least_change * left**2 + LEAST_NORM:
                 continue
@@ -153,7 +153,7 @@ def _promise(backgrounds: Sequence[Background], base: float, effect: str, start:
             for factor in _factors(arm, effect, suits if turned is None else -suits, numbers.largest_factor):
                 cost = background.cost(background.left + (factor if turned is None else -factor) * change)
                 if cost < best.cost:
-                    values = sized(arm, effect, turned or begin, factor) if factor != 1.0 else turned or begin
+                    values = sized(arm, effect, turned or begin, factor, dataset) if factor != 1.0 else turned or begin
                     torque = background.prediction.disturbances.torque
                     best = Promise(effect, values, cost, base - cost, torque, background.slopes)
     return best

@@ -168,7 +168,7 @@ def _secants(base: Baseline, effect: str, briefly: bool) -> list[Signature]:
         return base.unexplained(base.change(effect, values))
 
     starts = find(base.arm, effect, base.objective.dataset)
-    tried = (changes_in_proportion(base.arm, effect, start, change_by, left, base.numbers) for start in starts)
+    tried = (changes_in_proportion(base.arm, effect, start, change_by, left, base.objective.dataset) for start in starts)
     changes = [change for of_start in tried for change in of_start]
     found = [_secant(base, effect, start, change, left) for start, change in changes]
     return found + _with_phases_between(base, effect, changes, left)
@@ -245,6 +245,6 @@ def _factors(base: Baseline, signature: Signature) -> tuple[float, ...]:
 
 
 def _at_size(base: Baseline, signature: Signature, factor: float) -> Signature:
-    values = sized(base.arm, signature.effect, signature.start, factor)
+    values = sized(base.arm, signature.effect, signature.start, factor, base.objective.dataset)
     left = base.square_unexplained(base.residual_with(signature.effect, values))
     return Signature(signature.effect, values, 1.0 - left / base.left_square)

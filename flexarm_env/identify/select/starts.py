@@ -12,7 +12,6 @@ from flexarm_env.arm import Arm
 from flexarm_env.effects.base import Effect
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.select.followed import follows_sine
-from flexarm_env.identify.settings import Screening
 
 #: Values of an effect, and the change (rows,) of the errors that they make and no constant could.
 Change = tuple[dict[str, float], NDArray[np.float64]]
@@ -88,7 +87,7 @@ def changes_in_proportion(
     start: dict[str, float],
     change: Callable[[dict[str, float]], NDArray[np.float64]],
     left: NDArray[np.float64],
-    numbers: Screening,
+    dataset: Dataset,
 ) -> list[Change]:
     """Try a start, and smaller sizes as long as the change that it makes is out of proportion to the errors.
 
@@ -101,9 +100,10 @@ def changes_in_proportion(
         start: its values.
         change: computes the change (rows,) of the errors by the effect's values.
         left: (rows,) the errors.
-        numbers: of the screening.
+        dataset: the recordings.
     """
     found: list[Change] = []
+    numbers = dataset.settings.screening
     known, errors = arm.known[effect], float(np.linalg.norm(left))
     one_way = not (has_two_signs(known) or known.scan_phase)
     for _ in range(numbers.shrinks):
@@ -113,7 +113,7 @@ def changes_in_proportion(
         worse = one_way and size > errors and float(found[-1][1] @ left) > 0.0
         if not (far or worse) or not known.fitted:
             break
-        start = sized(arm, effect, start, errors / size if far else numbers.in_proportion)
+        start = sized(arm, effect, start, errors / size if far else numbers.in_proportion, dataset)
     return found
 
 
@@ -122,14 +122,10 @@ def has_two_signs(effect: type[Effect]) -> bool:
     return effect.fitted and effect.parameters[effect.size_parameter()].low < 0.0
 
 
-def sized(arm: Arm, effect: str, start: Mapping[str, float], factor: float) -> dict[str, float]:
-    """Multiply the size of an effect, within bounds; a parameter that is absent at infinity is divided."""
-    values = dict(start)
-    for key, p in arm.known[effect].parameters.items():
-        if p.null is not None:
-            value = values[key] / factor if p.null == math.inf else values[key] * factor
-            values[key] = min(max(value, p.low), p.high)
-    return values
+def sized(arm: Arm, effect: str, start: Mapping[str, float], factor: float, dataset: Dataset) -> dict[str, float]:
+    """Multiply the size of an effect, within bounds."""
+    sizes = {key: p for key, p in arm.known[effect].parameters.items() if p.null is not None}
+    return {**start, **{key: p.times(start[key], factor, dataset.scales) for key, p in sizes.items()}}
 
 
 def _scaled(arm: Arm, effect: str, start: Mapping[str, float], dataset: Dataset) -> dict[str, float]:
