@@ -16,7 +16,7 @@ class TipInertia(Effect):
     equation = "M(slope, slope) += J"
     parameters: ClassVar = {"inertia": Parameter("kg*m**2", 0.0, 1e3, 0.002, null=0.0, meaning="J, about the tip")}
     looks_like = "the higher modes lie low while the first stays"
-    confused_with = ("payload", "higher_modes")
+    confused_with = ("payload", "root_compliance", "higher_modes")
     needs = ("beam",)
 
     @staticmethod
