@@ -40,6 +40,11 @@ class StepSizes:
         narrow = np.maximum(self.now / factor, self.least)
         return StepSizes(self.least, narrow, narrow)
 
+    def finer(self, factor: float) -> StepSizes:
+        """Narrow the steps further than to the narrowest, for a residual that is smooth."""
+        narrow = self.now / factor
+        return StepSizes(narrow, narrow, narrow)
+
     def adapted(self, residual: Floats, j: Floats, grow: bool) -> StepSizes:
         """Choose steps at which each x changes the residual by as much as is left of it; no wider ones unless they may grow."""
         sizes = np.linalg.norm(residual) / np.maximum(np.linalg.norm(j, axis=0), LEAST_NORM)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,7 +61,7 @@ class Schedule:
                 return None
         if passes:
             objective = self._objective(x, own)
-            found = objective, self._minimise(objective, x, steps, last=True)
+            found = objective, self._finer(objective, self._minimise(objective, x, steps, last=True))
         assert found is not None
         return Calibration(self.parameters.apply(self.arm, found[1].x), found[1], found[0])
 
@@ -69,6 +69,19 @@ class Schedule:
         """Build an objective that weighs errors by those at x."""
         objective = objective_at(self.arm, self.dataset, self.parameters, torque_noise)
         return objective.weighted_by(self.parameters.apply(self.arm, x))
+
+    def _finer(self, objective: Objective, found: Solution) -> Solution:
+        """Continue over finer differences what ends off the noise, but not so far that an effect must be missing.
+
+        A difference of a beam's constant turns a fast vibration by a radian at the end of a long run: it is no slope then.
+        """
+        settings = self.dataset.settings
+        if not settings.errors.near**2 < objective.square_over_noise(found.residual) < settings.errors.far_off**2:
+            return found
+        fine = found.steps.finer(settings.least_squares.fine)
+        ending = Ending(self.iterations, settings.calibrating.final_tolerance)
+        again = minimise(objective.residual, found.x, objective.weights.prior, fine, settings.least_squares, ending)
+        return replace(again, steps=found.steps) if again.cost < found.cost else found
 
     def _minimise(self, objective: Objective, x: Floats, steps: StepSizes, last: bool, goal: Goal | None = None) -> Solution:
         """Minimise at one level; over narrow differences at the last."""
