@@ -10,7 +10,14 @@ from flexarm_env.identify.replay.dataset import prepare
 
 #: A light beam without friction: 45 Hz while its hub moves.
 BEAM = {
-    "drive": {"input": "voltage", "gear_ratio": 57.0, "torque_constant": 0.079, "resistance": 1773.0, "motor_inertia": 0.0},
+    "drive": {
+        "input": "voltage",
+        "gear_ratio": 57.0,
+        "limit": 24.0,
+        "torque_constant": 0.079,
+        "resistance": 1773.0,
+        "motor_inertia": 0.0,
+    },
     "hub": {"inertia": 4.4e-4},
     "beam": {"elements": 4, "length": 0.98, "mass_per_length": 9.7e-3, "bending_stiffness": 0.88},
     "sensors": {
