@@ -35,7 +35,7 @@ def still(series: Series, numbers: Inspecting) -> Integers:
     longest = int(lengths.max())
     within = np.zeros(len(series), dtype=bool)
     within[starts[lengths.argmax()] : starts[lengths.argmax()] + longest] = True
-    usual = series.most_repeats(~within, numbers)
+    usual = max(series.most_repeats(~within, numbers), series.repeats_at_rest(numbers))
     least = 1 + (numbers.evidence + math.log(len(series))) / -math.log(usual) if usual < 1 else math.inf
     chosen = np.flatnonzero(lengths > least)
     chosen = chosen[np.argsort(-lengths[chosen], kind="stable")]

@@ -11,6 +11,9 @@ import pytest
 import flexarm_env.demo
 from flexarm_env import Arm, Recording, inspect_recordings, simulate
 from flexarm_env.identify.inspect.fault import KINDS
+from flexarm_env.identify.inspect.frozen import frozen
+from flexarm_env.identify.inspect.series import Inspected
+from flexarm_env.identify.settings import SETTINGS
 from flexarm_env.terminal.inputs import read_recordings
 
 
@@ -287,6 +290,18 @@ def test_a_noisy_reading_that_stands_still_is_lost(thesis, square, signal, lengt
     assert (fault.kind, fault.signal, fault.value) == ("dropout", signal, values[1000])
     assert set(range(1000, 1000 + length)) <= set(fault.rows)
     assert "stands still" in fault.message
+
+
+@pytest.mark.parametrize(("noise", "found"), [(0.0, 0), (1.0, 1)])
+def test_an_encoder_without_noise_may_rest_beside_a_noisy_tachometer(thesis, noise, found):
+    """It turns back often where a fast vibration shakes the hub, and does not where the hub rests."""
+    draw, time, step = np.random.default_rng(1), np.arange(1250) / 125.0, 9e-4
+    moves = time > 1.0
+    angle = moves * (0.5 * np.sin(time - 1.0) + 2.0 * step * np.sin(250.0 * time))
+    angle = step * np.round(angle / step + noise * moves * draw.standard_normal(len(time)))
+    speed = 50.0 * moves * np.gradient(angle, time) + 2.5 * draw.standard_normal(len(time))
+    run = Recording.from_arrays("rest", time, "current", np.sin(time), {"arm_angle": angle, "motor_speed": speed})
+    assert len(frozen(Inspected.of(run), thesis, SETTINGS.inspecting)) == found
 
 
 def test_a_hub_that_is_stuck_while_the_beam_rings_is_sound(thesis, square):
