@@ -57,6 +57,11 @@ class Inspecting:
         "A wild reading stands off its neighbours by this multiple of the usual change.",
         "sound recordings: 3.0 at most, with play between gears; with `wild_noise`, half of both",
     )
+    answered: int = tuned(
+        2,
+        "Samples after a jump of the command in which a wild reading is the machine's answer.",
+        "a motor of an elastic joint behind a square wave of a PD loop, told as spikes of the tachometer at each step",
+    )
     wild_noise: float = tuned(
         40.0, "And by this multiple of the noise.", "sound recordings: 24 at most (EMPS), 20 with play between gears"
     )

@@ -13,6 +13,7 @@ from flexarm_env import Arm, Recording, inspect_recordings, simulate
 from flexarm_env.identify.inspect.fault import KINDS
 from flexarm_env.identify.inspect.frozen import frozen
 from flexarm_env.identify.inspect.series import Inspected
+from flexarm_env.identify.inspect.spike import spike
 from flexarm_env.identify.settings import SETTINGS
 from flexarm_env.terminal.inputs import read_recordings
 
@@ -144,6 +145,16 @@ def test_a_single_zero_is_a_dropout_and_another_single_reading_a_spike(thesis, s
     angle[1200] += 0.7
     fault = only(thesis, changed(square, "arm_angle", angle))
     assert (fault.kind, fault.rows, fault.value) == ("spike", (1200,), pytest.approx(0.7, abs=0.01))
+
+
+@pytest.mark.parametrize(("late", "found"), [(0, 1), (1, 0), (2, 0), (5, 1)])
+def test_a_leap_after_a_jump_of_the_command_is_no_spike(thesis, square, late, found):
+    """One in the same sample may be what a controller answers."""
+    command, speed = square.command.copy(), square.signals["motor_speed"].copy()
+    command[1200:] += 40.0 * np.abs(np.diff(command)).max()
+    speed[1200 + late] += 10.0 * np.abs(np.diff(speed)).max()
+    run = replace(changed(square, "motor_speed", speed), command=command)
+    assert len(spike(Inspected.of(run), thesis, SETTINGS.inspecting)) == found
 
 
 def test_spikes_are_named_by_their_largest(thesis, square):
