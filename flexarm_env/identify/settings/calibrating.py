@@ -58,7 +58,7 @@ class LeastSquares:
     )
     fine: float = tuned(
         10.0,
-        "Factor by which differences are finer where a calibration ends close to the noise and not at it.",
+        "Factor by which differences are finer where a calibration ends off the noise, though not far off.",
         "a payload beside a vibration of 45 Hz over 7 s: slopes over 1e-3 of the stiffness were 70 % off, over 1e-4 not",
     )
     largest_residual: float = tuned(1e4, "Largest residual, in standard deviations: one bad moment must not rule a fit.")
