@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
 import numpy as np
 
-from flexarm_env import Arm, Recording, simulate
+from flexarm_env import Arm, Recording, inspect_recordings, simulate
+from flexarm_env.identify.inspect.fault import KINDS
 from flexarm_env.identify.inspect.motion import motion_faults
 
 #: Largest relative error of a factor or a lag.
@@ -37,4 +39,17 @@ def late(recording: Recording, seconds: float, signals: tuple[str, ...]) -> Reco
 
 def found_in(arm: str, recording: Recording):
     (fault,) = motion_faults(Arm.load(arm), [recording])
+    return fault
+
+
+def changed(recording: Recording, signal: str, values) -> Recording:
+    """A recording with other readings of a signal."""
+    return replace(recording, signals=recording.signals | {signal: np.asarray(values, dtype=float)})
+
+
+def only(arm: Arm, recording: Recording):
+    """The one fault of a recording, whose line of an arm file is TOML."""
+    (fault,) = inspect_recordings(arm, [recording]).faults
+    assert fault.kind in KINDS
+    assert tomllib.loads(fault.hint) if fault.hint else True
     return fault
