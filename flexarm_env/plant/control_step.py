@@ -50,7 +50,7 @@ def mean_during_ramp(d: Numbers, n: Places, before: float, command: float, start
 @njit
 def hub_rests(n: Places, mode: int) -> bool:
     """Whether the hub of an arm of one body is held, so that no force varies with its motion."""
-    steady = n[n[at.TORQUE_LAWS]] == 0 and n[at.DRIVE_FEEDBACK] == at.NO_FEEDBACK
+    steady = n[n[at.TORQUE_LAWS]] == 0 and n[at.DRIVE_FEEDBACK] <= at.OPPOSED
     return n[at.BODIES] == 1 and mode == 1 and steady
 
 

@@ -177,13 +177,22 @@ def _counts(structure: Structure, model: LinearModel, modes: Sequence[Mode], poi
     n[at.COUPLED] = bodies == 2 or holds
     n[at.TIP] = len(model.names) - 2 if structure.elements and not structure.vibrations else -1
     n[at.HUB_BODY] = bodies - 1 if structure.has_joint else 0
-    n[at.DRIVE_FEEDBACK] = at.LIMITED if structure.has_limits else at.PROPORTIONAL if structure.is_servo else at.NO_FEEDBACK
+    n[at.DRIVE_FEEDBACK] = _feedback(structure)
     n[at.VARYING] = varying
     n[at.STEADY_BODIES] = 0 if varying else bodies
     n[at.BLOCKS] = max(mode.c0.shape[-1] for mode in modes)
     n[at.SIGNALS], n[at.STATES], n[at.DRIVERS] = len(model.signals), modes[0].physical.shape[-2], len(DRIVERS)
     n[at.MODES] = at.CONSTANTS
     return n
+
+
+def _feedback(structure: Structure) -> int:
+    """Tell how the drive's torque depends on the motion, as DRIVE_FEEDBACK does."""
+    if structure.has_limits:
+        return at.LIMITED
+    if structure.is_servo:
+        return at.PROPORTIONAL
+    return at.OPPOSED if exceeds(structure.resistance, 0.0) else at.NO_FEEDBACK
 
 
 def _longest_step(n: NDArray[np.int64], active: Sequence[ActiveLaw], interval: float) -> float:
@@ -215,14 +224,16 @@ def _constants(structure: Structure, laws: Sequence[Sequence[ActiveLaw]], interv
 
 
 def _add_drive(structure: Structure, head: Matrix) -> None:
-    """Write the constants of a drive with feedback or limits to those of d."""
-    if not (structure.is_servo or structure.has_limits):
+    """Write the constants of a drive with feedback to those of d."""
+    if _feedback(structure) == at.NO_FEEDBACK:
         return
     s = structure
     head[..., at.VOLTAGE_BY_ANGLE] = gain = s.command_gain * s.position_gain
     head[..., at.VOLTAGE_BY_COMMAND] = gain if s.is_servo else s.command_gain
     head[..., at.VOLTAGE_BY_SPEED] = s.command_gain * s.rate_gain
     head[..., at.TORQUE_BY_VOLTAGE], head[..., at.BACK_EMF] = s.torque_by_amp / s.resistance, s.back_emf
+    if not s.has_limits:
+        return
     head[..., at.LARGEST_VOLTAGE] = _or_none(s.largest_voltage if s.is_servo else 0.0)
     head[..., at.LARGEST_DROP] = _or_none(s.largest_current * s.resistance)
     head[..., at.SUPPLY_VOLTAGE] = _or_none(s.supply_voltage)

@@ -13,14 +13,14 @@ WINDUP, WINDUP_WEIGHT, HOLD, HOLD_WEIGHT, HOLD_DRIVERS, HOLD_FORCES, DRAG_VELOCI
 OUTPUT, OUTPUT_DRIVERS = 31, 32
 FRICTION_LAWS, TORQUE_LAWS, DRAG_LAWS, DRIVE_LAWS, PARAMETERS, STEADY_BODIES, QUIET_TABLE, STEP_TABLES = range(33, 41)
 MESH, MESH_WEIGHT, SENSOR_LAWS, FACTOR_LAWS, PRESLIDING_LAWS, WEIGHT_LAWS, RAMP_LAWS, SPRING_LAWS = range(41, 49)
-# body on which the hub's sensors are; whether the drive's torque depends on the motion: not, in proportion, up to its limits
+# body on which the hub's sensors are; how the drive's torque depends on the motion
 HUB_BODY, DRIVE_FEEDBACK = 49, 50
 # coordinate of the tip's deflection; -1 of a rigid arm
 TIP = 51
 COUNTS = 52
 
-# --- values of DRIVE_FEEDBACK
-NO_FEEDBACK, PROPORTIONAL, LIMITED = range(3)
+# --- values of DRIVE_FEEDBACK: not at all, by back-EMF, by a servo's loop besides, up to limits
+NO_FEEDBACK, OPPOSED, PROPORTIONAL, LIMITED = range(4)
 
 # --- one block's numbers in QUIET_TABLE: C, S, R₀, S + c₁ R₀, c₀, c₁, the tested row's chord error per amplitude, that row's two
 # numbers, the forcing by command, hub torque, 1, held hub, two each
@@ -33,7 +33,7 @@ QUIET_SIZE = 17
 GAP, TOLERANCE, INTERVAL, EARLY_LENGTH, LATE_LENGTH, HUB_FRICTION_SHARE, MOTOR_FRICTION_SHARE, GEAR_RATIO = range(8)
 # torque in the gears per windup, per its rate, and of rigid ones per command
 LOAD_STIFFNESS, LOAD_DAMPING, LOAD_BY_COMMAND = range(8, 11)
-# of a drive with feedback or limits: voltage by command, by angle and by speed; torque by voltage; back-EMF by speed, arm side;
+# of a drive with feedback: voltage by command, by angle and by speed; torque by voltage; back-EMF by speed, arm side;
 # limits of the voltage and of the voltage across the armature; supply voltage, and its resistance over the armature's
 VOLTAGE_BY_COMMAND, VOLTAGE_BY_ANGLE, VOLTAGE_BY_SPEED, TORQUE_BY_VOLTAGE, BACK_EMF = range(11, 16)
 LARGEST_VOLTAGE, LARGEST_DROP, SUPPLY_VOLTAGE, SUPPLY_SHARE = range(16, 20)

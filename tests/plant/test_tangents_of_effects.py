@@ -9,7 +9,6 @@ from flexarm_env import Arm, Recording, simulate
 
 INTERVAL = 0.005
 TIME = INTERVAL * np.arange(160)
-SWING = Recording.from_arrays("swing", TIME, "current", 4.0 * np.sin(2 * np.pi * 0.9 * TIME) + 0.5, {"arm_angle": 0.0 * TIME})
 
 #: By effect: parameters that differ from the typical ones, and how close derivatives come to differences. Forces that vary with
 #: the motion are found to some 1e-8 of themselves, which a difference over a narrow step enlarges.
@@ -34,9 +33,15 @@ EFFECTS = {
 }
 
 
+def swing(arm):
+    """Build a command to the arm's drive."""
+    command = 4.0 * np.sin(2 * np.pi * 0.9 * TIME) + 0.5
+    return Recording.from_arrays("swing", TIME, arm.input, command, {"arm_angle": 0.0 * TIME})
+
+
 def played(arm):
     """Readings (samples, signals) of the swing."""
-    recording = simulate(arm, SWING, noise=False)
+    recording = simulate(arm, swing(arm), noise=False)
     return np.column_stack([recording.signals[signal] for signal in arm.signals])
 
 
@@ -75,15 +80,22 @@ def test_the_load_of_a_late_command():
     compare(arm, [f"effects.{path}" for path in paths] + ["hub.inertia"], 1e-6)
 
 
-def rigid_axis():
-    drive = {"input": "current", "torque_constant": 0.1, "gear_ratio": 10.0, "motor_inertia": 1e-3, "limit": 10.0}
+@pytest.mark.slow(minutes=2)
+def test_the_load_of_a_drive_whose_back_emf_lowers_it():
+    drive = {"input": "voltage", "torque_constant": 0.1, "resistance": 2.0, "gear_ratio": 10.0, "motor_inertia": 1e-3, "limit": 10.0}
+    arm = rigid_axis(drive).with_effect("load_friction", coefficient=0.2)
+    compare(arm, ["effects.load_friction.coefficient", "drive.torque_constant", "hub.inertia"], 1e-6)
+
+
+def rigid_axis(drive=None):
+    drive = drive or {"input": "current", "torque_constant": 0.1, "gear_ratio": 10.0, "motor_inertia": 1e-3, "limit": 10.0}
     effects = {"viscous": {"coefficient": 0.1}, "coulomb": {"torque": 0.3}}
     return Arm.from_table({"drive": drive, "hub": {"inertia": 0.4}, "effects": effects, "sensors": {"arm_angle": {}}}, "axis")
 
 
 def compare(arm, names, tolerance):
     """Compare the derivatives of readings by values of an arm with differences."""
-    recording, slopes = simulate(arm, SWING, noise=False, derivatives=names)
+    recording, slopes = simulate(arm, swing(arm), noise=False, derivatives=names)
     assert np.array_equal(np.column_stack([recording.signals[signal] for signal in arm.signals]), played(arm))
     for name in names:
         wanted, width = differences(arm, name)

@@ -62,7 +62,7 @@ class Tangents:
         n = self.plant.layout
         rows = [constants[n[at.PARAMETERS] :]]
         if n[at.VARYING]:
-            rows.append(constants[[at.GAP, at.LOAD_STIFFNESS, at.LOAD_DAMPING, at.LOAD_BY_COMMAND]])
+            rows.append(constants[[at.GAP, *range(at.LOAD_STIFFNESS, at.BACK_EMF + 1)]])
         return np.any(np.concatenate(rows) != 0.0, axis=0)
 
     def _modal(self, mode: int) -> Matrix:
