@@ -99,34 +99,40 @@ def move(a: Arrays, command: float, t: float, slot: int) -> None:
 def control_step(d: Numbers, n: Places, s: Numbers, before: float, command: float, w: Numbers) -> None:
     """Advance the arm by one sample: the last command acts until the delay is over, then the new one.
 
-    The command in effect stands in s meanwhile: limits of the drive and the load of the gears depend on it.
+    The command in effect stands in s meanwhile: limits of the drive and the load of the gears depend on it. What both commands
+    exceed the drive's output by is a torque beside it.
     """
-    a, own = Arrays(d, n, s, w), s[at.COMMAND]
-    s[at.COMMAND] = before
-    for _ in range(n[at.EARLY_SUBSTEPS]):
-        if n[at.STEADY_BODIES] != 1 or not quiet_step(a, before, d[at.EARLY_LENGTH], 0):
-            move(a, before, d[at.EARLY_LENGTH], 0)
+    a, own, early = Arrays(d, n, s, w), s[at.COMMAND], d[at.EARLY_LENGTH]
+    beside = command - own
+    for j in range(n[at.EARLY_SUBSTEPS]):
+        start = d[at.INTERVAL] + (j - n[at.EARLY_SUBSTEPS]) * early
+        now = beside + mean_during_ramp(d, n, s[at.EARLIER], before - beside, start, start + early)
+        s[at.COMMAND] = now
+        if n[at.STEADY_BODIES] != 1 or not quiet_step(a, now, early, 0):
+            move(a, now, early, 0)
     for j in range(n[at.LATE_SUBSTEPS]):
         now = mean_during_ramp(d, n, before, command, j * d[at.LATE_LENGTH], (j + 1) * d[at.LATE_LENGTH])
         s[at.COMMAND] = now
         if n[at.STEADY_BODIES] != 1 or not quiet_step(a, now, d[at.LATE_LENGTH], 1):
             move(a, now, d[at.LATE_LENGTH], 1)
-    s[at.COMMAND] = own
+    s[at.COMMAND], s[at.EARLIER] = own, before - beside
 
 
 @njit(inline="always")
 def uneven_step(a: Arrays, before: float, command: float, interval: float) -> None:
     """Advance the arm as control_step does, over an interval [s] without tables."""
     d, n, own = a.d, a.n, a.s[at.COMMAND]
-    a.s[at.COMMAND] = before
-    early = min(d[at.EARLY_LENGTH] * n[at.EARLY_SUBSTEPS], interval)
+    whole = d[at.EARLY_LENGTH] * n[at.EARLY_SUBSTEPS]
+    early = min(whole, interval)
     late = interval - early
     if early > 0.0:
-        move(a, before, early, UNTABULATED)
+        now = mean_during_ramp(d, n, a.s[at.EARLIER], before, d[at.INTERVAL] - whole, d[at.INTERVAL])
+        a.s[at.COMMAND] = now
+        move(a, now, early, UNTABULATED)
     longest = max(d[at.EARLY_LENGTH], d[at.LATE_LENGTH])  # one of them is next to nothing where the delay ends at a sample
     count = max(math.ceil(late / longest - 1e-9), 1) if late > 0.0 else 0
     for j in range(count):
         now = mean_during_ramp(d, n, before, command, j * late / count, (j + 1) * late / count)
         a.s[at.COMMAND] = now
         move(a, now, late / count, UNTABULATED)
-    a.s[at.COMMAND] = own
+    a.s[at.COMMAND], a.s[at.EARLIER] = own, before

@@ -41,11 +41,12 @@ LARGEST_VOLTAGE, LARGEST_DROP, SUPPLY_VOLTAGE, SUPPLY_SHARE = range(16, 20)
 HUB_VISCOUS, MOTOR_VISCOUS = 20, 21
 CONSTANTS = 22
 
-# --- s: the state; friction's memory of the hub's angle and its torque there; block coordinates z from Z_START on. The motor's
-# place follows the hub's, so that HUB_DIRECTION + body and HELD_HUB + body are a body's
+# --- s: the state; friction's memory of the hub's angle and its torque there; the drive's output before COMMAND, from which it
+# may still ramp; block coordinates z from Z_START on. The motor's place follows the hub's, so that HUB_DIRECTION + body and
+# HELD_HUB + body are a body's
 MODE, HUB_DIRECTION, MOTOR_DIRECTION, GEAR_SIDE, HELD_HUB, HELD_MOTOR, TIME, COMMAND = range(8)
-KNOWN_ANGLE, KNOWN_FRICTION = 8, 9
-Z_START = 10
+KNOWN_ANGLE, KNOWN_FRICTION, EARLIER = 8, 9, 10
+Z_START = 11
 
 # --- columns of the drivers
 W_COMMAND, W_HUB, W_MOTOR, W_ONE, W_SIDE, W_HELD_HUB, W_HELD_MOTOR = range(7)

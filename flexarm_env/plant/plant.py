@@ -97,7 +97,8 @@ class Plant:
         """Set the state [q, q̇, extra] (states,), at rest at angle 0 by default, under a command [A or V] at a time [s]."""
         start = np.zeros(self.states) if physical is None else np.ascontiguousarray(physical, dtype=float)
         self.state[:] = 0.0
-        self.state[at.COMMAND], self.state[at.TIME] = command, time
+        self.state[at.COMMAND] = self.state[at.EARLIER] = command
+        self.state[at.TIME] = time
         self.kernel.place_at(self.constants, self.layout, self.state, start, command, self.scratch)
 
     def physical(self) -> Matrix:

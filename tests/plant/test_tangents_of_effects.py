@@ -82,7 +82,14 @@ def test_the_load_of_a_late_command():
 
 @pytest.mark.slow(minutes=2)
 def test_the_load_of_a_drive_whose_back_emf_lowers_it():
-    drive = {"input": "voltage", "torque_constant": 0.1, "resistance": 2.0, "gear_ratio": 10.0, "motor_inertia": 1e-3, "limit": 10.0}
+    drive = {
+        "input": "voltage",
+        "torque_constant": 0.1,
+        "resistance": 2.0,
+        "gear_ratio": 10.0,
+        "motor_inertia": 1e-3,
+        "limit": 10.0,
+    }
     arm = rigid_axis(drive).with_effect("load_friction", coefficient=0.2)
     compare(arm, ["effects.load_friction.coefficient", "drive.torque_constant", "hub.inertia"], 1e-6)
 

@@ -85,6 +85,7 @@ class TangentPlaces(NamedTuple):
     lanes_physical: int
     lanes_reading: int
     lanes_command: int
+    lanes_earlier: int
     lanes_before: int
     lanes_now: int
     lanes_length: int
@@ -136,7 +137,7 @@ def tangent_places(d: Numbers, n: Places) -> TangentPlaces:
     return TangentPlaces(
         start, phi, coefficients, tables, z, motion, above, below, slopes, shifts, system, laws, readings, keys, steady_tables,
         force, lanes_coefficients, node, lanes_motion, lanes_z, physical, reading, command,
-        command + 1, command + 2, command + 3, command + 4, command + 5, command + 6, command + 7,
+        command + 1, command + 2, command + 3, command + 4, command + 5, command + 6, command + 7, command + 8,
     )  # fmt: skip
 
 
