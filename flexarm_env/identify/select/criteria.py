@@ -57,6 +57,9 @@ class Criteria(Protocol):
     def replaces(self, rival: Model, now: Model, rank: Callable[[Model], float]) -> bool:
         """Whether a rival fits so much better that it takes an effect's place."""
 
+    def comes_near(self, removed: float, most: float) -> bool:
+        """Whether the excess that an effect removes comes near to the most that one removes, while others may be missing."""
+
     def contender_difference(self, removed: float) -> float:
         """Compute the difference of the excess up to which models are calibrated again as rivals of the best one."""
 
@@ -216,6 +219,10 @@ class ThresholdCriteria:
             return rank(rival) < rank(now)
         most, has_more = 1.0 - self.settings.selecting.least_gain, now.numbers < rival.numbers
         return rank(rival) < most * rank(now) and (not has_more or rival.score.excess < most * now.score.excess)
+
+    def comes_near(self, removed: float, most: float) -> bool:
+        """Whether it is a share of the most."""
+        return removed >= self.settings.selecting.near_gain * most
 
     def contender_difference(self, removed: float) -> float:
         """Compute a share of the removed excess."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibration import Calibration
@@ -118,6 +118,7 @@ def fit_in_place(
     without: Arm,
     effects: Sequence[str],
     progress: Progress,
+    replaced: Mapping[str, float] | None = None,
     thorough: bool = False,
     rivals_of_noise: bool = False,
 ) -> list[Model | None]:
@@ -128,13 +129,15 @@ def fit_in_place(
         without: the arm without any of the effects.
         effects: names.
         progress: of these calibrations.
+        replaced: the values of an effect in whose place they come: one of their own names may be as large.
         thorough: whether each is started from the nominal constants as well.
         rivals_of_noise: whether each is a rival of a model that leaves only noise.
 
     Returns:
         A model of each of the first effects; None for one that cannot be a rival.
     """
-    tasks = [(_fit_from_signature, (calibrator, effect, without, thorough, rivals_of_noise)) for effect in effects]
+    starts = (without, replaced or {})
+    tasks = [(_fit_in_place, (calibrator, effect, *starts, thorough, rivals_of_noise)) for effect in effects]
     return _in_time(calibrator, tasks, [f"{effect} instead" for effect in effects], progress)
 
 
@@ -183,12 +186,20 @@ def _starts(calibrator: Calibrator, effect: str, arm: Arm, trials: Sequence[Tria
     return [dict(start) for start, _ in own] + first
 
 
-def _fit_from_signature(calibrator: Calibrator, effect: str, without: Arm, thorough: bool, rivals_of_noise: bool) -> Model | None:
+def _fit_in_place(
+    calibrator: Calibrator, effect: str, without: Arm, replaced: Mapping[str, float], thorough: bool, rivals_of_noise: bool
+) -> Model | None:
+    """Calibrate an arm with an effect from its signature, or from numbers of the one that it replaces where these fit better."""
     dataset = calibrator.dataset
     found = signatures(baseline(calibrator.uncalibrated(without), dataset), effect)
     start = found[0].start if found else first_start(without, effect, dataset)
+    arms = [without.with_effect(effect, **start)]
+    shared = {key: value for key, value in replaced.items() if key in start}
+    if shared:
+        arms.append(without.with_effect(effect, **start | shared))
+        arms.sort(key=lambda arm: calibrator.score(arm, held_out=False).windows)
     fit = fit_rival if rivals_of_noise else fit_model
-    return fit(calibrator, (effect,), without.with_effect(effect, **start), thorough)
+    return fit(calibrator, (effect,), arms[0], thorough)
 
 
 def _share_of_companion(calibrator: Calibrator, found: Calibration) -> float:

@@ -17,7 +17,7 @@ from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.propose import nearest, none_comes_near, others, starts_of_search
 from flexarm_env.identify.select.rivals import find_rivals
 from flexarm_env.identify.select.screen import Trial, control_of, screen
-from flexarm_env.identify.select.starts import candidates, shows_part_of_period
+from flexarm_env.identify.select.starts import candidates, rivals_of, shows_part_of_period
 from flexarm_env.identify.select.stepwise import extend_chain
 from flexarm_env.identify.select.swap import compare_rivals, exchange
 from flexarm_env.identify.select.trace import Accepted, Trace, Tried, beside, gains, others_of, placed, share, with_last_score
@@ -177,8 +177,9 @@ class Search:
         """Give an effect's place to one that it is confused with, where that fits better beside everything else.
 
         An effect that came in first was compared with its rivals while others were missing still, and a companion with none. One
-        that a simpler effect equals may fit better only because the simpler one's calibration ended early. Each is compared anew
-        when one beside it has given way, and so is one whose equivalents were found beside others.
+        that is confused with a simpler effect may fit better only because the simpler one's calibration ended early. Each is
+        compared anew when one beside it has given way, and so is one whose equivalents, or simpler effects near to it, were found
+        beside others.
 
         Args:
             trace: so far.
@@ -224,7 +225,7 @@ class Search:
         every = untried or self.criteria.leaves_room(trace.model)
         for place, (effect, accepted) in enumerate(zip(trace.effects, trace.accepted, strict=True)):
             others = others_of(trace.effects, place)
-            is_outdated = len(accepted.equivalent) > 1 and accepted.beside != others
+            is_outdated = accepted.beside != others and (len(accepted.equivalent) > 1 or len(accepted.near) > 0)
             if compared.get(effect) != others and (every or is_outdated or self._may_be_another(trace, place)):
                 return place
         return None
@@ -233,7 +234,8 @@ class Search:
         """Whether an accepted effect may stand for a simpler one, or for one that was not compared with it."""
         arm, accepted = trace.model.arm, trace.accepted[place]
         own = arm.known[accepted.effect]
-        simpler = any(len(arm.known[n].parameters) < len(own.parameters) for n in accepted.equivalent)
+        others = [*accepted.equivalent, *rivals_of(accepted.effect, arm.without_effect(accepted.effect), self.calibrator.dataset)]
+        simpler = any(len(arm.known[n].parameters) < len(own.parameters) for n in others)
         return simpler or own.pairs_with_all or shows_part_of_period(arm, accepted.effect, self.calibrator.dataset)
 
     def drop_useless(self, trace: Trace) -> Trace:
@@ -332,8 +334,13 @@ class Search:
         model = self._polish(winner)
         first, *companions = winner.effects
         beside_first = frozenset([*trace.effects, *companions])
-        added = [Accepted(first, names, model.score, beside_first), *(Accepted(n, (n,), model.score) for n in companions)]
+        near = tuple(m.effects[0] for m in alike if m.numbers < winner.numbers and self._comes_near(before, m, winner, measure))
+        added = [Accepted(first, names, model.score, beside_first, near), *(Accepted(n, (n,), model.score) for n in companions)]
         return trace.then("accept", model, [*trace.accepted, *added])
+
+    def _comes_near(self, before: Model, model: Model, winner: Model, measure: Measure) -> bool:
+        removed, most = (measure(before.score) - measure(m.score) for m in (model, winner))
+        return self.criteria.comes_near(removed, most)
 
     def _polish(self, model: Model) -> Model:
         """Continue the calibration of a model, as long as there is time."""

@@ -58,11 +58,12 @@ def compare_rivals(
     without = now.arm.without_effect(effect)
     smooth = shows_part_of_period(now.arm, effect, dataset)
     every = rivals_of(effect, without, dataset) + (simpler_beyond(effect, without, dataset) if smooth else [])
-    equivalent = set(accepted.equivalent[1:]) - set(every)
-    every += [name for name in candidates(without, dataset) if name in equivalent]
+    others = {*accepted.equivalent[1:], *accepted.near} - {effect, *every}
+    every += [name for name in candidates(without, dataset) if name in others]
     names = [name for name in every if name not in compared]
     near = now.score.windows <= calibrator.settings.errors.explained
-    fitted = fit_in_place(calibrator, without, names, progress, thorough=smooth, rivals_of_noise=near)
+    own_values = now.arm.effects[effect]
+    fitted = fit_in_place(calibrator, without, names, progress, own_values, thorough=smooth, rivals_of_noise=near)
     tried, untried = frozenset([effect, *names[: len(fitted)]]), tuple(names[len(fitted) :])
     rivals = [m for m in fitted if m and not m.at_bound]
     if not rivals:

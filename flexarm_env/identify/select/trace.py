@@ -40,12 +40,14 @@ class Accepted:
         equivalent: all that the data cannot tell from it, itself first.
         score: errors after it was added.
         beside: the other effects of the model in which these equivalents were found.
+        near: simpler ones that came near it when it was accepted.
     """
 
     effect: str
     equivalent: tuple[str, ...]
     score: Score
     beside: frozenset[str] = frozenset()
+    near: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

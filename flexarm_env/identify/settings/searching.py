@@ -136,6 +136,11 @@ class Selecting:
     same_gain: float = tuned(
         0.03, "Effects are equivalent if what they leave differs by less than this share of what they remove."
     )
+    near_gain: float = tuned(
+        0.5,
+        "A simpler effect that removes this share of what another removes may be what is missing, where others are missing too.",
+        "viscous friction behind a slow amplifier passed for a bent potentiometer: 80 and 84 % of the excess, before the second",
+    )
     same_excess: float = tuned(0.1, "And by less than one of them leaves, or this excess, whichever is more.")
     signal_rest: float = tuned(
         0.01,
