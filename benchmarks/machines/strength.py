@@ -1,7 +1,8 @@
 """How strongly an effect shows: the error over the noise that it leaves once the constants have been fitted, all on the rig.
 
 The error in windows of 1 s is what a diagnosis decides on. Here a window begins with the hub where the machine has it: from the
-difference of two runs the motion is taken out that follows from its angle and speed at the start of each window.
+difference of two runs the motion is taken out that follows from its angle and speed at the start of each window. Slopes tell how
+strong an effect is; a refit in a few steps confirms it, since constants may make up for more than slopes foretell.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from benchmarks.machines.effects import Sized
 from benchmarks.machines.experiments import Run
 from benchmarks.machines.machine import record, shown
 from benchmarks.machines.model import Model
-from benchmarks.machines.spread import spreads, with_values
+from benchmarks.machines.spread import EXACT, spreads, with_values
 
 Floats = NDArray[np.float64]
 
@@ -32,6 +33,10 @@ WEIGHT_STEP = 0.01
 WEIGHT, DIRECTION = "effects.base_tilt.torque", "effects.base_tilt.uphill"
 #: Difference over the noise beyond which a slope is taken from a smaller step.
 MODERATE = 30.0
+#: Steps of a refit, and the furthest that one moves a constant at first, over its prior.
+STEPS, FURTHEST = 5, 1.0
+#: Share of the strength by slopes that a refit must leave.
+KEPT = 0.5
 #: Relative tolerance of a strength; largest number of trials; weakest size that is tried over the largest.
 NEAR, TRIALS, WEAKEST = 0.15, 12, 1e-6
 
@@ -48,14 +53,17 @@ class Yardstick:
     def __init__(self, machine: Model, runs: Sequence[Run], hidden: Sequence[Sized] = ()) -> None:
         self.machine, self.runs, self.rates = machine, runs, [run.rate for run in runs]
         self.noise = np.array([machine.arm.reading_noise(signal) for signal in machine.arm.sensors])
-        self.spreads = spreads(machine)
+        self.spreads = spreads(machine, exact=())
         self.free = [path for path in (WEIGHT, DIRECTION) if path in machine.values]
         present = [sized.settings(machine) for sized in hidden]
         self.commands = [record(machine, run, present).command for run in runs]
         self.without = [self._read(machine, i, ()) for i in range(len(runs))]
 
     def _read(self, machine: Model, place: int, effects: Sequence[dict[str, float]]) -> tuple[Floats, Floats]:
-        return shown(machine, self.commands[place], self.rates[place], effects)
+        readings, speed = shown(machine, self.commands[place], self.rates[place], effects)
+        paths = [f"sensors.{signal}.gain" for signal in machine.arm.sensors]
+        gains = [machine.values[path] / self.machine.values[path] if path in EXACT else 1.0 for path in paths]
+        return readings * gains, speed
 
     def difference(self, machine: Model, effects: Sequence[dict[str, float]] = (), sensor: bool = False) -> Floats:
         """Compute the difference (samples · signals,) that effects or other constants make, in standard deviations of the noise.
@@ -90,35 +98,41 @@ class Yardstick:
             if "motor_speed" in signals:
                 window[:, signals.index("motor_speed")] -= motion[:, 1] * ratio
 
-    @cached_property
-    def weight(self) -> Floats:
-        """Differences (readings, 2 or 0) by the weight of a link and by its direction, which a fit moves without a prior."""
-        found = [self._slope(path, WEIGHT_STEP) for path in self.free]
-        return np.stack(found, axis=1) if found else np.zeros((len(self.constants), 0))
+    @property
+    def paths(self) -> list[str]:
+        """The values that a fit moves: constants with a prior, and the weight of a link and its direction without one."""
+        return [*self.spreads, *self.free]
 
     @cached_property
-    def constants(self) -> Floats:
-        """Differences (readings, constants) by one standard deviation of the prior of each constant that a fit moves."""
-        return np.stack([self._slope(path, STEP) for path in self.spreads], axis=1)
+    def columns(self) -> Floats:
+        """Differences (readings, values) by one standard deviation of the prior of each constant, and by a unit of each other."""
+        return self.slopes(np.zeros(len(self.paths)))
 
-    def _slope(self, path: str, step: float) -> Floats:
+    def slopes(self, moved: Floats) -> Floats:
+        """Compute the differences (readings, values) by a unit of each value, from where all of them were moved to."""
+        here = self.difference(self.moved(moved)) if np.any(moved) else 0.0
+        return np.stack([self._slope(place, moved, here) for place in range(len(moved))], axis=1)
+
+    def _slope(self, place: int, moved: Floats, here: Floats | float) -> Floats:
         """Compute the difference (readings,) by a unit of a value, from a step that changes readings about as effects do.
 
         With a larger one the hub sticks at other times.
         """
-        sensor = path.startswith("sensors.")
-        change = self.difference(self.moved(path, step), sensor=sensor)
-        if rms(change) > MODERATE:
+        path = self.paths[place]
+        step, sensor = WEIGHT_STEP if path in self.free else STEP, path.startswith("sensors.") and not np.any(moved)
+        for _ in range(2):
+            change = self.difference(self.moved(moved + step * (np.arange(len(moved)) == place)), sensor=sensor) - here
+            if rms(change) <= MODERATE:
+                break
             step *= MODERATE / rms(change)
-            change = self.difference(self.moved(path, step), sensor=sensor)
         return change / step
 
-    def moved(self, path: str, step: float) -> Model:
-        """Move a constant by standard deviations of its prior, a weight by a logarithm, or its direction by an angle [rad]."""
-        value = self.machine.values[path]
-        return with_values(
-            self.machine, {path: value + step if path == DIRECTION else value * math.exp(step * self.spreads.get(path, 1.0))}
-        )
+    def moved(self, steps: Floats) -> Model:
+        """Move constants by standard deviations of their priors, a weight by a logarithm, its direction by an angle [rad]."""
+        by_path = dict(zip(self.paths, steps, strict=True))
+        now = self.machine.values
+        values = {path: now[path] * math.exp(step * self.spreads.get(path, 1.0)) for path, step in by_path.items()}
+        return with_values(self.machine, values | {path: now[path] + by_path[path] for path in by_path if path == DIRECTION})
 
     def signature(self, sized: Sized) -> Floats:
         """Compute the difference (readings,) that an effect makes."""
@@ -126,15 +140,32 @@ class Yardstick:
 
     def left(self, difference: Floats, rivals: Sequence[Floats] = ()) -> float:
         """Compute the rms of what constants within their priors, and weight and rivals of any size, cannot make up for."""
-        free = np.column_stack([self.weight, *rivals])
-        columns = np.hstack([self.constants, free])
-        priors = np.diag(np.r_[np.ones(self.constants.shape[1]), np.zeros(free.shape[1])])
-        moves = np.linalg.lstsq(np.vstack([columns, priors]), np.r_[difference, np.zeros(len(priors))])[0]
-        return rms(difference - columns @ moves)
+        columns = np.column_stack([self.columns, *rivals])
+        return rms(difference - columns @ self._made_up(columns, difference, np.zeros(columns.shape[1])))
+
+    def _made_up(self, columns: Floats, difference: Floats, moved: Floats) -> Floats:
+        """Compute by how much constants, and what has no prior, move on from where they are to make up for a difference."""
+        priors = np.diag((np.arange(columns.shape[1]) < len(self.spreads)).astype(float))
+        return np.linalg.lstsq(np.vstack([columns, priors]), np.r_[difference, -priors @ moved])[0]
 
     def strength(self, sized: Sized) -> float:
         """Compute the rms of what constants cannot make up for of an effect."""
         return self.left(self.signature(sized))
+
+    def refitted(self, sized: Sized) -> float:
+        """Compute the rms that an effect leaves when the constants are refitted, in steps that are halved where they lead up."""
+        signature, moved = self.signature(sized), np.zeros(len(self.paths))
+        left, furthest = signature, FURTHEST
+        columns = self.columns
+        for _ in range(STEPS):
+            step = np.clip(self._made_up(columns, left, moved), -furthest, furthest)
+            then = signature - self.difference(self.moved(moved + step))
+            if rms(then) > rms(left):
+                furthest /= 4.0
+                continue
+            moved, left = moved + step, then
+            columns = self.slopes(moved)
+        return rms(left)
 
 
 def rms(difference: Floats) -> float:
@@ -159,7 +190,8 @@ def carried_on(machine: Model, count: int, rate: float) -> Floats:
 def find_size(yard: Yardstick, sized: Sized, wanted: float) -> Sized | None:
     """Find the size at which an effect of the largest plausible size is as strong as wanted; None where it never is.
 
-    Its strength is that under the commands of the machine that has it: a loop drives through a dead zone, and past a limit.
+    Its strength is that under the commands of the machine that has it: a loop drives through a dead zone, and past a limit. One
+    that refitted constants make up for has none.
     """
     low, high = np.log(WEAKEST), 0.0  # logarithms of the share of that size
     share = 0.0
@@ -167,9 +199,10 @@ def find_size(yard: Yardstick, sized: Sized, wanted: float) -> Sized | None:
         made = replace(sized, size=sized.size * math.exp(share))
         strength = yard.strength(made)
         if abs(strength - wanted) < NEAR * wanted:
-            strength = Yardstick(yard.machine, yard.runs, (made,)).strength(made)
-        if abs(strength - wanted) < NEAR * wanted:
-            return replace(made, strength=strength)
+            own = Yardstick(yard.machine, yard.runs, (made,))
+            strength = own.strength(made)
+            if abs(strength - wanted) < NEAR * wanted:
+                return replace(made, strength=strength) if own.refitted(made) > KEPT * wanted else None
         low, high = (low, share) if strength > wanted else (share, high)
         if high <= low:
             return None

@@ -102,11 +102,22 @@ def test_an_effect_is_as_strong_as_wanted_and_grows_with_its_size():
     assert find_size(yard, one, 1e9) is None
 
 
+@pytest.mark.parametrize("seed", [2, 3])
+def test_a_cable_that_a_heavier_link_makes_up_for_leaves_less_than_slopes_foretell(seed):
+    draw = np.random.default_rng(seed)
+    machine = drawn(draw, FAMILIES["vertical"](draw))
+    yard = Yardstick(machine, runs(draw, machine)[:1])
+    hidden = CATALOGUE["cable_stiffness"]
+    one = Sized("cable_stiffness", hidden, 0.2 * hidden.largest(machine), draw_details(draw, hidden, machine))
+    assert yard.strength(one) > 5.0
+    assert yard.refitted(one) < 0.6
+
+
 def test_a_constant_that_is_off_within_its_prior_leaves_nothing():
     draw = np.random.default_rng(6)
     machine = drawn(draw, FAMILIES["rigid_current"](draw))
     yard = Yardstick(machine, runs(draw, machine)[:1])
-    own = 0.5 * yard.constants[:, 0]
+    own = 0.5 * yard.columns[:, 0]
     assert np.sqrt(np.mean(own**2)) > 10.0
     assert yard.left(own) < 0.05
     assert yard.left(own, [own]) < 1e-6

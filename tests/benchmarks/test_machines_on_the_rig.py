@@ -36,7 +36,7 @@ NOISE, SHARE = 0.5, 0.002
 #: The same share where the plant resolves a breakaway to a quarter of a sample only: while the drive's output ramps.
 RAMPING = {"rate_limit": 0.004}
 #: Where the two differ for a reason, in some families: what rounding differs by grows from impact to impact, and where a link
-#: turns over; a link that does not start in balance falls before its late readings begin; the rig's root is damped as its beam is.
+#: turns over; a link that starts off balance falls before its late readings begin; the rig's root is damped as its beam is.
 APART = {"backlash", "base_tilt", "time_offset", "root_compliance"}
 
 

@@ -202,7 +202,7 @@ def test_an_effect_is_added_beside_what_forecasts_ask_for_unless_that_explains_a
 
 
 def test_when_one_effect_has_given_way_the_others_are_compared_anew(monkeypatch):
-    def compare(self: Search, trace: Trace, place: int, progress: Progress) -> Trace:
+    def compare(self: Search, trace: Trace, place: int, progress: Progress, left_out: frozenset[str]) -> Trace:
         compared.append(trace.effects[place])
         names = [PAIR[0], "base_tilt"] if place == 1 else trace.effects
         return accept(trace, scored(Score(1.5, 1.5)), *names)
@@ -217,7 +217,7 @@ def test_when_one_effect_has_given_way_the_others_are_compared_anew(monkeypatch)
 def test_effects_that_give_way_to_each_other_are_compared_until_one_pair_comes_again(monkeypatch):
     turns = dict(zip((*PAIR, *OTHERS), (*OTHERS, *PAIR), strict=True))
 
-    def compare(self: Search, trace: Trace, place: int, progress: Progress) -> Trace:
+    def compare(self: Search, trace: Trace, place: int, progress: Progress, left_out: frozenset[str]) -> Trace:
         names = [turns[n] if at == place else n for at, n in enumerate(trace.effects)]
         return accept(trace, scored(Score(2.0, 2.0)), *names)
 
@@ -241,20 +241,35 @@ def test_an_effect_that_gave_way_is_compared_with_what_took_its_place(monkeypatc
     assert left_out == [frozenset(), frozenset(["base_tilt", "air_drag"])]
 
 
-@pytest.mark.parametrize(("beside", "compared"), [("coulomb", ["cable_stiffness"]), ("tach_filter", [])])
+@pytest.mark.parametrize(("beside", "compared"), [("coulomb", "base_tilt"), ("tach_filter", "constant_torque")])
 def test_equivalents_that_were_found_beside_another_effect_are_compared_anew_at_the_noise(monkeypatch, beside, compared):
-    def compare(self: Search, trace: Trace, place: int, progress: Progress) -> Trace:
+    """Where they were found beside the same one, only what is simpler and was not tried is left to be compared."""
+
+    def compare(self: Search, trace: Trace, place: int, progress: Progress, left_out: frozenset[str]) -> Trace:
         seen.append(trace.effects[place])
+        rivals.extend({"base_tilt", "constant_torque"} - left_out)
         return trace
 
     seen: list[str] = []
+    rivals: list[str] = []
     monkeypatch.setattr(Search, "_compare", compare)
     error = Score(1.0, 1.0)
     equivalent = Accepted("cable_stiffness", ("cable_stiffness", "base_tilt"), error, frozenset([beside]))
     accepted = [equivalent, Accepted("tach_filter", ("tach_filter",), error)]
     trace = Trace.begin(model()).then("accept", scored(error, "cable_stiffness", "tach_filter"), accepted)
     far_off().swap(trace, Progress())
-    assert seen == compared
+    assert seen == ["cable_stiffness"]
+    assert compared in rivals
+    assert (len(rivals) == 1) == (beside == "tach_filter")
+
+
+def test_what_was_tried_is_not_compared_again_at_the_noise(monkeypatch):
+    monkeypatch.setattr(Search, "_compare", lambda *given: pytest.fail("compared"))
+    error = Score(1.0, 1.0)
+    accepted = [Accepted("cable_stiffness", ("cable_stiffness",), error)]
+    found = scored(error, "cable_stiffness")
+    trace = Trace.begin(model()).then("fit", tried=[Tried("constant_torque", 0.1, found.calibration)])
+    assert far_off().swap(trace.then("accept", found, accepted), Progress()).effects == ["cable_stiffness"]
 
 
 @pytest.mark.parametrize(("left", "compares"), [(Score(8.9, 19.0), True), (Score(20.0, 200.0), False), (Score(2.9, 300.0), True)])

@@ -194,7 +194,8 @@ def _fit_in_place(
     found = signatures(baseline(calibrator.uncalibrated(without), dataset), effect)
     start = found[0].start if found else first_start(without, effect, dataset)
     arms = [without.with_effect(effect, **start)]
-    shared = {key: value for key, value in replaced.items() if key in start}
+    own = calibrator.nominal.known[effect].parameters
+    shared = {key: value for key, value in replaced.items() if key in start and own[key].low <= value <= own[key].high}
     if shared:
         arms.append(without.with_effect(effect, **start | shared))
         arms.sort(key=lambda arm: calibrator.score(arm, held_out=False).windows)

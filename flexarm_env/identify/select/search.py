@@ -17,7 +17,7 @@ from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.propose import nearest, none_comes_near, others, starts_of_search
 from flexarm_env.identify.select.rivals import find_rivals
 from flexarm_env.identify.select.screen import Trial, control_of, screen
-from flexarm_env.identify.select.starts import candidates, rivals_of, shows_part_of_period
+from flexarm_env.identify.select.starts import candidates, shows_part_of_period
 from flexarm_env.identify.select.stepwise import extend_chain
 from flexarm_env.identify.select.swap import compare_rivals, exchange
 from flexarm_env.identify.select.trace import Accepted, Trace, Tried, beside, gains, others_of, placed, share, with_last_score
@@ -177,9 +177,9 @@ class Search:
         """Give an effect's place to one that it is confused with, where that fits better beside everything else.
 
         An effect that came in first was compared with its rivals while others were missing still, and a companion with none. One
-        that is confused with a simpler effect may fit better only because the simpler one's calibration ended early. Each is
-        compared anew when one beside it has given way, and so is one whose equivalents, or simpler effects near to it, were found
-        beside others.
+        that a simpler effect equals may fit better only because the simpler one's calibration ended early. Each is compared anew
+        when one beside it has given way, and so is one whose equivalents, or simpler effects near to it, were found beside
+        others. At the noise the others are compared with those simpler ones alone that were not tried.
 
         Args:
             trace: so far.
@@ -188,12 +188,13 @@ class Search:
         """
         compared: dict[str, frozenset[str]] = {}
         seen: set[frozenset[str]] = set()
-        while (place := self._next_place(trace, compared, untried)) is not None and frozenset(trace.effects) not in seen:
+        while (found := self._next_place(trace, compared, untried)) is not None and frozenset(trace.effects) not in seen:
+            place, left_out = found
             if self.is_late:
                 trace = self._stop(trace, f"{trace.effects[place]} was compared with its rivals")
                 break
             before = frozenset(trace.effects)
-            trace = self._compare(trace, place, progress)
+            trace = self._compare(trace, place, progress, left_out)
             compared[trace.effects[place]] = others_of(trace.effects, place)
             if frozenset(trace.effects) != before:
                 seen.add(before)
@@ -218,25 +219,40 @@ class Search:
             return trace
         return self._compare(trace, place, progress, compared | (comparison.tried - {effect}))
 
-    def _next_place(self, trace: Trace, compared: Mapping[str, frozenset[str]], untried: bool) -> int | None:
-        """Find the first effect that was not compared yet beside the others as they are now, and may give way to a rival."""
+    def _next_place(
+        self, trace: Trace, compared: Mapping[str, frozenset[str]], untried: bool
+    ) -> tuple[int, frozenset[str]] | None:
+        """Find the first effect that was not compared yet beside the others as they are now, and may give way to a rival.
+
+        Returns:
+            Its place, and the effects with which it need not be compared.
+        """
         if not self.criteria.can_compare_rivals(trace.model):
             return None
         every = untried or self.criteria.leaves_room(trace.model)
         for place, (effect, accepted) in enumerate(zip(trace.effects, trace.accepted, strict=True)):
             others = others_of(trace.effects, place)
+            if compared.get(effect) == others:
+                continue
             is_outdated = accepted.beside != others and (len(accepted.equivalent) > 1 or len(accepted.near) > 0)
-            if compared.get(effect) != others and (every or is_outdated or self._may_be_another(trace, place)):
-                return place
+            if every or is_outdated or self._may_be_another(trace, place):
+                return place, frozenset()
+            if simpler := self._untried_and_simpler(trace, place):
+                return place, frozenset(trace.model.arm.known) - simpler
         return None
 
     def _may_be_another(self, trace: Trace, place: int) -> bool:
         """Whether an accepted effect may stand for a simpler one, or for one that was not compared with it."""
         arm, accepted = trace.model.arm, trace.accepted[place]
         own = arm.known[accepted.effect]
-        others = [*accepted.equivalent, *rivals_of(accepted.effect, arm.without_effect(accepted.effect), self.calibrator.dataset)]
-        simpler = any(len(arm.known[n].parameters) < len(own.parameters) for n in others)
+        simpler = any(len(arm.known[n].parameters) < len(own.parameters) for n in accepted.equivalent)
         return simpler or own.pairs_with_all or shows_part_of_period(arm, accepted.effect, self.calibrator.dataset)
+
+    def _untried_and_simpler(self, trace: Trace, place: int) -> frozenset[str]:
+        """The effects of fewer numbers with which an accepted one is confused, and that screening did not find worth a trial."""
+        known, own = trace.model.arm.known, trace.model.arm.known[trace.effects[place]]
+        others = [n for n in own.confused_with if n in known and n not in trace.effects and n not in trace.ranking]
+        return frozenset(n for n in others if len(known[n].parameters) < len(own.parameters))
 
     def drop_useless(self, trace: Trace) -> Trace:
         """Drop an effect that later ones have made useless, or that only makes up for the wrong one of several equivalents."""
