@@ -120,11 +120,11 @@ class Yardstick:
         """
         path = self.paths[place]
         step, sensor = WEIGHT_STEP if path in self.free else STEP, path.startswith("sensors.") and not np.any(moved)
-        for _ in range(2):
-            change = self.difference(self.moved(moved + step * (np.arange(len(moved)) == place)), sensor=sensor) - here
-            if rms(change) <= MODERATE:
-                break
+        unit = (np.arange(len(moved)) == place).astype(float)
+        change = self.difference(self.moved(moved + step * unit), sensor=sensor) - here
+        if rms(change) > MODERATE:
             step *= MODERATE / rms(change)
+            change = self.difference(self.moved(moved + step * unit), sensor=sensor) - here
         return change / step
 
     def moved(self, steps: Floats) -> Model:
@@ -153,7 +153,7 @@ class Yardstick:
         return self.left(self.signature(sized))
 
     def refitted(self, sized: Sized) -> float:
-        """Compute the rms that an effect leaves when the constants are refitted, in steps that are halved where they lead up."""
+        """Compute the rms that an effect leaves when the constants are refitted, in steps that are shorter where they lead up."""
         signature, moved = self.signature(sized), np.zeros(len(self.paths))
         left, furthest = signature, FURTHEST
         columns = self.columns
