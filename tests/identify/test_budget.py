@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flexarm_env import Arm
+from flexarm_env import Arm, Recording
 from flexarm_env.experiments.simulate import simulate
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.conclude import conclude
@@ -180,6 +180,20 @@ def test_the_unexplained_torque_is_that_of_the_missing_effects():
     missing, rest = (unexplained_torque(*prepare(arm, recordings)) for arm in (nominal, complete))
     assert missing == pytest.approx(np.hypot(0.05, 0.02), rel=0.1)
     assert rest < 0.3 * missing
+
+
+def test_the_unexplained_torque_falls_where_the_hub_mostly_rests():
+    """At rest friction has any value up to its own, with the sign of the noise: over all samples, the rest would rise."""
+    nominal, missing = Arm.load("cu-rigid"), 0.05
+    time = 0.004 * np.arange(2000)
+    volts = 3.0 * missing / nominal.structure().torque_by_command
+    pulse = np.where(time % 2.0 < 0.15, volts, np.where(time % 2.0 < 0.25, -volts, 0.0)) * np.where(time % 4.0 < 2.0, 1.0, -1.0)
+    complete = nominal.with_effect("coulomb", torque=missing)
+    commands = Recording.from_arrays("pulses", time, nominal.input, pulse, {"arm_angle": np.zeros_like(time)})
+    recording = simulate(complete, commands, seed=2)
+    before, after = (unexplained_torque(*prepare(arm, [recording])) for arm in (nominal, complete))
+    assert before == pytest.approx(missing, rel=0.1)
+    assert after < 0.1 * before
 
 
 def test_the_unexplained_torque_is_told_from_step_to_step():
