@@ -11,8 +11,13 @@ from benchmarks.machines.experiments import Run
 from benchmarks.machines.model import Model
 from benchmarks.machines.strength import Yardstick
 
-#: Effects that move a machine alike unless it rests; a size of one is that of the other with the sign reversed.
-ALIKE = {"constant_torque": "asymmetric_coulomb", "asymmetric_coulomb": "constant_torque"}
+#: Effects that move a machine alike unless it rests, or unless its commands change fast; size of the second over the first's.
+ALIKE = {
+    "constant_torque": ("asymmetric_coulomb", -1.0),
+    "asymmetric_coulomb": ("constant_torque", -1.0),
+    "input_delay": ("current_lag", 1.0),
+    "current_lag": ("input_delay", 1.0),
+}
 #: Difference over the noise below which two effects move a machine alike: the error of one in place of the other is 1.001.
 SAME = 0.05
 
@@ -30,14 +35,15 @@ def twins(machine: Model, runs: Sequence[Run], hidden: Sequence[Sized]) -> dict[
     """
     found = {}
     for place, own in enumerate(hidden):
-        other = ALIKE.get(own.name)
+        other, ratio = ALIKE.get(own.name, ("", 0.0))
         if other and other not in (sized.name for sized in hidden):
-            twin = replace(own, name=other, hidden=PLANT[other], size=-own.size)
+            twin = replace(own, name=other, hidden=PLANT[other], size=ratio * own.size)
             instead = [*hidden[:place], twin, *hidden[place + 1 :]]
             yard = Yardstick(machine, runs, hidden)
             with_own, with_twin = (
                 yard.difference(machine, [sized.settings(machine) for sized in every]) for every in (hidden, instead)
             )
-            if yard.left(with_twin - with_own) < SAME:
+            rounded = [yard.signature(twin)] if twin.hidden.part == "delay" else []  # on the rig, of whole steps
+            if yard.left(with_twin - with_own, rounded) < SAME:
                 found[other] = own.name
     return found

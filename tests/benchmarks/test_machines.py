@@ -188,6 +188,20 @@ def test_a_torque_and_uneven_friction_are_twins_unless_the_axis_rests_under_a_pu
     assert found(below if name == "constant_torque" else -below) == {}
 
 
+@pytest.mark.parametrize(("name", "other"), [("current_lag", "input_delay"), ("input_delay", "current_lag")])
+def test_a_short_lag_and_a_delay_are_twins_and_long_ones_under_jumps_are_not(name, other):
+    machine = FAMILIES["rigid_current"](np.random.default_rng(4))
+    time = np.arange(0.0, 5.0, 0.01)
+    swing = 0.5 * machine.torque / machine.torque_per_command * np.sin(2.0 * np.pi * time)
+
+    def found(command, size):
+        plan = Plan(command, np.zeros_like(time), (0.0, 0.0, math.inf))
+        return twins(machine, [Run("swing", plan, 100.0, 1)], [Sized(name, PLANT[name], size)])
+
+    assert found(swing, 2e-4) == {other: name}
+    assert found(np.abs(swing).max() * np.sign(swing), 0.05) == {}
+
+
 def answer(kind, hidden, named, verdict="effects", twins=None, **truth):
     return {
         "case": {
