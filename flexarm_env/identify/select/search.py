@@ -249,7 +249,7 @@ class Search:
         return simpler or own.pairs_with_all or shows_part_of_period(arm, accepted.effect, self.calibrator.dataset)
 
     def _untried_and_simpler(self, trace: Trace, place: int) -> frozenset[str]:
-        """The effects of fewer numbers with which an accepted one is confused, and that screening did not find worth a trial."""
+        """Find effects of fewer numbers with which an accepted one is confused, and that screening found not worth a trial."""
         known, own = trace.model.arm.known, trace.model.arm.known[trace.effects[place]]
         others = [n for n in own.confused_with if n in known and n not in trace.effects and n not in trace.ranking]
         return frozenset(n for n in others if len(known[n].parameters) < len(own.parameters))

@@ -107,7 +107,7 @@ def ramp_lanes(a: Arrays, g: Tangent, p: TangentPlaces, ramp: Ramp, part: int, l
 
 @njit(forceinline=True)
 def ramps(a: Arrays, g: Tangent, p: TangentPlaces, before: float, command: float) -> tuple[Ramp, Ramp]:
-    """The ramp of the sample before, which goes on until the delay is over, and that to the new command."""
+    """Describe the ramp of the sample before, which goes on until the delay is over, and that to the new command."""
     for x in range(g.w.shape[1]):
         g.w[p.lanes_earlier, x] = g.s[at.EARLIER, x]
     last = Ramp(a.s[at.EARLIER], before, p.lanes_earlier, p.lanes_before, a.d[at.INTERVAL])
