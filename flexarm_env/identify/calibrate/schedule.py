@@ -37,7 +37,9 @@ class Schedule:
     def run(self, levels: Sequence[float], passes: int, most: float = np.inf) -> Calibration | None:
         """Calibrate through levels [Nm], then at the arm's own torque noise.
 
-        What is left of both is skipped once an arm is near the noise, where its error is smooth. The last pass is narrow.
+        What is left of both is skipped once an arm is near the noise, where its error is smooth. The last pass is narrow. A level
+        that leaves too much is taken anew from the arm's values where these do not: a little that a level with more feedback
+        moved may be much of a rough error.
 
         Args:
             levels: of process noise.
@@ -46,7 +48,7 @@ class Schedule:
                 as its remaining Jacobians are not enough.
         """
         own, settings = self.arm.constants["drive"]["torque_noise"], self.dataset.settings
-        x = self.parameters.position(self.arm)
+        begun = x = self.parameters.position(self.arm)
         steps = self.parameters.step_sizes(x, settings.parameters)
         found: tuple[Objective, Solution] | None = None
         for noise in (*levels, *(passes - 1) * (own,)):
@@ -56,9 +58,12 @@ class Schedule:
             objective = here if here is not None and noise == own else self._objective(x, noise)
             goal = Goal(objective.square_over_noise, most**2) if most < np.inf and noise > own else None
             found = objective, self._minimise(objective, x, steps, last=False, goal=goal)
-            x, steps = self.parameters.within(found[1].x), found[1].steps
             if goal and goal.measure(found[1].residual) > goal.most:
-                return None
+                objective = self._objective(begun, noise)
+                if x is begun or objective.excess_factor > most:
+                    return None
+                found = objective, self._minimise(objective, begun, steps, last=False)
+            x, steps = self.parameters.within(found[1].x), found[1].steps
         if passes:
             objective = self._objective(x, own)
             found = objective, self._finer(objective, self._minimise(objective, x, steps, last=True))
