@@ -11,7 +11,7 @@ import flexarm_env
 from benchmarks.answers.run import run
 from benchmarks.hidden_effects import table, truth
 from benchmarks.hidden_effects.baselines import best_fit_wins, stepwise
-from benchmarks.hidden_effects.cases import CATALOGUE, cases, sample
+from benchmarks.hidden_effects.cases import CATALOGUE, Case, cases, sample
 from benchmarks.hidden_effects.score import confusions, figures
 from benchmarks.hidden_effects.sindy import sparse_effects
 from flexarm_env.arm import Arm
@@ -38,8 +38,13 @@ def answer(case, effects, verdict="effects", final=1.0):
     }
 
 
-def test_cases_are_as_many_and_as_mixed_as_they_say():
-    made = cases(1)
+@pytest.fixture(scope="module")
+def made() -> list[Case]:
+    """Draw the cases of one seed, once."""
+    return cases(1)
+
+
+def test_cases_are_as_many_and_as_mixed_as_they_say(made):
     kinds = [case.kind for case in made]
     assert len(made) >= 250
     assert kinds.count("null") == 60
@@ -49,21 +54,20 @@ def test_cases_are_as_many_and_as_mixed_as_they_say():
     assert {run for c in made for run in c.runs} >= {("square", 0.6, 0.0), ("square", 1.0, 0.15)}
 
 
-def test_a_seed_gives_the_same_cases_and_another_others():
-    assert cases(1) == cases(1)
-    assert all(a.settings != b.settings for a, b in zip(cases(1), cases(2), strict=True) if a.kind in ("one", "outside"))
+def test_a_seed_gives_the_same_cases_and_another_others(made):
+    assert cases(1) == made
+    assert all(a.settings != b.settings for a, b in zip(made, cases(2), strict=True) if a.kind in ("one", "outside"))
 
 
-def test_a_sample_is_of_all_kinds_and_part_of_a_larger_one():
-    small, large = sample(1, 60), sample(1, 120)
-    assert large[:60] == small
-    assert len({c.name for c in large}) == 120
+def test_a_sample_is_of_all_kinds_and_part_of_a_larger_one(made):
+    small, whole = sample(1, 60), sample(1, len(made))
+    assert whole[:60] == small
     assert {c.kind for c in small} == {"one", "two", "outside", "null"}
-    assert {c.name for c in sample(1, len(cases(1)))} == {c.name for c in cases(1)}
+    assert {c.name for c in whole} == {c.name for c in made}
 
 
-def test_a_saturation_is_below_the_largest_command():
-    case = next(c for c in cases(1) if c.effects == ("saturation",))
+def test_a_saturation_is_below_the_largest_command(made):
+    case = next(c for c in made if c.effects == ("saturation",))
     commands = [np.abs(run.command).max() for run in case.recordings()]
     assert max(commands) > case.settings["sat"]
 
@@ -74,16 +78,15 @@ def test_every_effect_is_in_the_catalogue():
         assert set(truth.PARAMETERS[effect]) <= set(catalogue()[effect].parameters), effect
 
 
-def test_a_machine_is_recorded_with_what_is_known_of_it():
-    case = next(c for c in cases(1) if ("square", 1.0, 0.15) in c.runs and c.kind == "null")
+def test_a_machine_is_recorded_with_what_is_known_of_it(made):
+    case = next(c for c in made if ("square", 1.0, 0.15) in c.runs and c.kind == "null")
     runs = case.recordings()
     assert [r.conditions.get("payload", 0.0) for r in runs] == [0.0, 0.15, 0.0]
     again = case.recordings()
     assert all(np.array_equal(a.signals["arm_angle"], b.signals["arm_angle"]) for a, b in zip(runs, again, strict=True))
 
 
-def test_the_table_counts_what_was_answered(tmp_path):
-    made = cases(1)
+def test_the_table_counts_what_was_answered(made, tmp_path):
     threes = [c for c in made if c.kind == "one" and c.strength == 3.0]
     nulls = [c for c in made if c.kind == "null"]
     answers = [answer(c, list(c.effects)) for c in threes[1:]] + [answer(threes[0], ["viscous"])]
@@ -100,9 +103,9 @@ def test_the_table_counts_what_was_answered(tmp_path):
     assert json.loads((tmp_path / "table.json").read_text())["cases"] == len(answers)
 
 
-def test_an_exact_twin_is_as_good_in_its_own_line_only():
-    late = next(c for c in cases(1) if c.effects == ("time_offset",) and c.strength == 3.0)
-    pair = next(c for c in cases(1) if c.kind == "two" and "dead_zone" in c.effects)
+def test_an_exact_twin_is_as_good_in_its_own_line_only(made):
+    late = next(c for c in made if c.effects == ("time_offset",) and c.strength == 3.0)
+    pair = next(c for c in made if c.kind == "two" and "dead_zone" in c.effects)
     twins = [name.replace("dead_zone", "brush_drop") for name in pair.effects]
     found = {f.what: f.value for f in figures([answer(late, ["input_delay"]), answer(pair, twins)])}
     assert found["right effect first, strength 3"] == found["two effects, both right, strength 3"] == 0.0
@@ -111,8 +114,8 @@ def test_an_exact_twin_is_as_good_in_its_own_line_only():
     assert found["sensor against plant side"] == 0.0
 
 
-def test_of_what_no_case_says_there_is_none(tmp_path):
-    null = next(c for c in cases(1) if c.kind == "null")
+def test_of_what_no_case_says_there_is_none(made, tmp_path):
+    null = next(c for c in made if c.kind == "null")
     folder = tmp_path / "mine-1"
     found = table.write(folder, [answer(null, [], "nothing_missing")], "mine", 1, "command")
     assert {f.what for f in found if f.met} == {"false alarm on nulls", "time of one core for three recordings, median"}
@@ -120,8 +123,8 @@ def test_of_what_no_case_says_there_is_none(tmp_path):
     assert "NaN" not in (folder / "table.json").read_text()
 
 
-def test_a_stopped_run_goes_on(tmp_path):
-    chosen = cases(1)[:2]
+def test_a_stopped_run_goes_on(made, tmp_path):
+    chosen = made[:2]
     calls = []
 
     def method(arm, recordings):

@@ -47,6 +47,7 @@ def test_nothing_changes_where_it_shows_before_or_never(arm, large):
     assert shares(arm, recorded(machine, large)) == (pytest.approx(0.65), [])
 
 
+@pytest.mark.slow(minutes=1)
 def test_an_effect_that_acts_only_late_can_be_added(arm):
     found = add("saturation", arm, [recorded(arm.with_effect("saturation", limit=LIMIT), [7.2, 8.6])])
     assert found.error["refitted"] > 2.0

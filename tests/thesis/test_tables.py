@@ -24,12 +24,14 @@ def test_experiment_1_lacks_a_constant_drop():
     assert width == pytest.approx(line.intercept, rel=0.05)
 
 
+@pytest.mark.slow(minutes=1)
 def test_experiment_2_bends_and_no_effect_of_the_catalogue_does():
     found = diagnose(*tables.experiment_2(), jobs=1)
     assert found.verdict == "unknown"
     assert found.error["refitted"] > 2.0
 
 
+@pytest.mark.slow(minutes=1)
 def test_experiment_3_lacks_coulomb_friction():
     model, recordings = tables.experiment_3()
     found = diagnose(model, recordings, jobs=1)
