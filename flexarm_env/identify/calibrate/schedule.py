@@ -59,10 +59,10 @@ class Schedule:
             goal = Goal(objective.square_over_noise, most**2) if most < np.inf and noise > own else None
             found = objective, self._minimise(objective, x, steps, last=False, goal=goal)
             if goal and goal.measure(found[1].residual) > goal.most:
-                objective = self._objective(begun, noise)
-                if x is begun or objective.excess_factor > most:
+                again = None if x is begun else self._objective(begun, noise)
+                if again is None or again.excess_factor > most:
                     return None
-                found = objective, self._minimise(objective, begun, steps, last=False)
+                found = again, self._minimise(again, begun, steps, last=False)
             x, steps = self.parameters.within(found[1].x), found[1].steps
         if passes:
             objective = self._objective(x, own)
