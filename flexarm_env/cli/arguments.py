@@ -67,17 +67,24 @@ class Given:
         Raises:
             InputError: for a place that cannot be written, and for an arm or recordings that cannot be read.
         """
+        from flexarm_env.terminal import inputs, outputs
+
         check(json, report, save, other, read=self.files(save), specs=self.effects, pictures=report is not None)
-        return self.read()
+        arm = load_arm(self.arm, self.effects)
+        outputs.check_places(json, report, save, other, read=inputs.files_read(arm, self.recordings, self.columns))
+        return arm, self._recordings(arm)
 
     def read(self) -> tuple[Arm, list[Recording]]:
         """Read the arm and its recordings, of which there may be none."""
+        arm = load_arm(self.arm, self.effects)
+        return arm, self._recordings(arm) if self.recordings else []
+
+    def _recordings(self, arm: Arm) -> list[Recording]:
         from flexarm_env.terminal import inputs
 
-        arm = load_arm(self.arm, self.effects)
-        recordings = inputs.read_recordings(arm, self.recordings, self.columns) if self.recordings else []
+        recordings = inputs.read_recordings(arm, self.recordings, self.columns)
         show_notes(recordings)
-        return arm, recordings
+        return recordings
 
     def command_line(self, name: str, seed: int | None = None, rate: float | None = None) -> dict[str, str]:
         """Write the command line that does this again, for the report."""

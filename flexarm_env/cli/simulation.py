@@ -16,7 +16,8 @@ from flexarm_env.experiments.plans import EXPERIMENTS
 from flexarm_env.pictures import words
 from flexarm_env.recordings.recording import Recording
 from flexarm_env.terminal import tables
-from flexarm_env.terminal.inputs import read_recordings
+from flexarm_env.terminal.inputs import files_read, read_recordings
+from flexarm_env.terminal.outputs import check_places
 from flexarm_env.terminal.progress import progress
 
 
@@ -45,6 +46,7 @@ def simulate(
     """
     played: str | Recording = source
     if source and source not in EXPERIMENTS and Path(source).exists():
+        check_places(json, save, read=files_read(arm, [Path(source)], columns, require_signal=False))
         found = read_recordings(arm, [Path(source)], columns, require_signal=False)
         show_notes(found)
         if len(found) != 1:

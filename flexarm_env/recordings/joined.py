@@ -47,6 +47,32 @@ def run_name(columns: ColumnMap, path: Path) -> str:
     return path.stem if pattern == "*" else _star(pattern, path.name)
 
 
+def recording_name(path: Path, columns: ColumnMap | None) -> str:
+    """Name the recording of a file: by its run where it is in several files, by its folder where each folder is one run.
+
+    Args:
+        path: the file, that with the command where there are several.
+        columns: its column map, if there is one.
+    """
+    if columns is None or not columns.joins:
+        return path.stem
+    return run_name(columns, path) or path.resolve().parent.name
+
+
+def files_of_recording(path: Path, columns: ColumnMap | None) -> list[Path]:
+    """List the files that hold a recording, that with the command first. Arguments as `recording_name`."""
+    if columns is None or not columns.joins:
+        return [path]
+    return list(dict.fromkeys(_part_file(path, pattern, columns) for pattern in _by_file(columns)))
+
+
+def _part_file(path: Path, pattern: str, columns: ColumnMap) -> Path:
+    """Find the file of a pattern that belongs to the file with the command."""
+    if pattern in ("", _command_pattern(columns)):
+        return path
+    return path.with_name(pattern.replace("*", run_name(columns, path)))
+
+
 def _command_pattern(columns: ColumnMap) -> str:
     """Find the name of the file that has the command; "*" where it has no name of its own."""
     return columns.sources[check_names(tuple(columns.sources))].file or "*"
@@ -115,18 +141,16 @@ def read_joined(path: Path, columns: ColumnMap, gains: Mapping[str, float]) -> t
         InputError: for a file that is absent or cannot be read, for conditions of two files that differ, and for times that do
             not overlap.
     """
-    name = run_name(columns, path)
-    main = _command_pattern(columns)
     parts: list[Part] = []
     conditions: dict[str, float] = {}
     notes: list[str] = []
     checksum = hashlib.sha256()
     clock: float | None = None
     for pattern, sources in _by_file(columns).items():
-        file = path if pattern in ("", main) else path.with_name(pattern.replace("*", name))
+        file = _part_file(path, pattern, columns)
         try:
             content = read_bytes(file)
-            beside = columns.conditions if pattern in ("", main) else {}
+            beside = columns.conditions if file == path else {}
             table = format_of(file).table(content, replace(columns, sources=sources, conditions=beside))
             arrays = table.in_si(gains)
             first = table.first_time(gains)

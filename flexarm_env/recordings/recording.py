@@ -27,7 +27,7 @@ from flexarm_env.recordings.episodes import check_episodes, episodes_of
 from flexarm_env.recordings.files import PathLike, read_bytes
 from flexarm_env.recordings.formats.catalogue import format_of
 from flexarm_env.recordings.formats.lerobot import with_info
-from flexarm_env.recordings.joined import read_joined, recording_files, run_name
+from flexarm_env.recordings.joined import read_joined, recording_files, recording_name
 from flexarm_env.recordings.messages import file_error
 from flexarm_env.recordings.samples import samples_of
 from flexarm_env.recordings.sidecar import conditions_beside
@@ -226,7 +226,7 @@ class Recording(Shown):
         try:
             if layout is not None and layout.joins:
                 table, checksum = read_joined(path, layout, gains)
-                name = run_name(layout, path) or path.resolve().parent.name
+                name = recording_name(path, layout)
                 recordings = [_with_notes(_recording(name, table.values, table.conditions, (), table.sources), table.notes)]
             else:
                 content = read_bytes(path)
@@ -239,7 +239,8 @@ class Recording(Shown):
         except InputError as error:
             raise file_error(path, error) from None
         controller = None if layout is None else layout.controller
-        return [replace(_with_sidecar(one, path), controller=controller, source=str(path), sha256=checksum) for one in recordings]
+        recordings = [_with_sidecars(one, path, layout) for one in recordings]
+        return [replace(one, controller=controller, source=str(path), sha256=checksum) for one in recordings]
 
     @classmethod
     def read_all(
@@ -377,9 +378,9 @@ def _with_notes(recording: Recording, notes: Sequence[str]) -> Recording:
     return replace(recording, notes=(*notes, *recording.notes))
 
 
-def _with_sidecar(recording: Recording, path: Path) -> Recording:
-    """Add the conditions in the file beside a recording."""
-    stated, notes = conditions_beside(path, recording.conditions)
+def _with_sidecars(recording: Recording, path: Path, columns: ColumnMap | None) -> Recording:
+    """Add the conditions in the files beside a recording."""
+    stated, notes = conditions_beside(path, columns, recording.conditions)
     return replace(recording, conditions=recording.conditions | stated, notes=(*recording.notes, *notes))
 
 

@@ -11,7 +11,9 @@ from flexarm_env import units
 from flexarm_env.errors import InputError
 from flexarm_env.files import read_toml
 from flexarm_env.recordings.checks import check_conditions
+from flexarm_env.recordings.columns import ColumnMap
 from flexarm_env.recordings.conditions import CONDITIONS, unit_of
+from flexarm_env.recordings.joined import files_of_recording, recording_name
 from flexarm_env.recordings.messages import file_error
 
 TABLE = "conditions"
@@ -19,47 +21,60 @@ TABLE = "conditions"
 _OTHERS = ("drive", "columns", "hub", "sensors")
 
 
-def conditions_beside(path: Path, given: Mapping[str, float]) -> tuple[dict[str, float], tuple[str, ...]]:
-    """Read the conditions in the file beside a recording, and notes that name it; none where there is none.
+def conditions_beside(
+    path: Path, columns: ColumnMap | None, given: Mapping[str, float]
+) -> tuple[dict[str, float], tuple[str, ...]]:
+    """Read the conditions in the files beside a recording, and notes that name them; none where there are none.
 
     Args:
-        path: of the recording.
-        given: conditions that its own file states.
+        path: of the recording, that with the command where it is in several files.
+        columns: its column map, if there is one.
+        given: conditions that its own files state.
 
     Raises:
-        InputError: for a faulty file beside it, and for a condition that both state.
+        InputError: for a faulty file beside it, for a condition that its own file states, too, and for two that differ.
     """
-    beside = sidecar_of(path)
-    if beside is None:
-        return {}, ()
-    stated = read_conditions(beside)
-    twice = [name for name in stated if name in given]
-    if twice:
-        raise file_error(path, f"condition '{twice[0]}' comes twice, in the file and in {beside.name}; keep one of the two")
-    if not stated:
-        return {}, ()
-    listed = ", ".join(f"{name} = {value:g} {unit_of(name, value)}".rstrip() for name, value in stated.items())
-    return stated, (f"{beside.name} states {listed}",)
+    found: dict[str, float] = {}
+    notes = []
+    for beside in sidecars_of(path, columns):
+        stated = read_conditions(beside)
+        for name, value in stated.items():
+            if name in given:
+                raise file_error(path, f"condition '{name}' comes twice, in the file and in {beside.name}; keep one of the two")
+            if found.get(name, value) != value:
+                other = f"{found[name]:g} in another file beside the recording"
+                raise file_error(beside, f"condition '{name}' is {value:g}, but {other}; correct one")
+        found |= stated
+        listed = ", ".join(f"{name} = {value:g} {unit_of(name, value)}".rstrip() for name, value in stated.items())
+        notes += [f"{beside.name} states {listed}"] if stated else []
+    return found, tuple(notes)
 
 
-def sidecar_of(path: Path) -> Path | None:
-    """Find the file of conditions beside a recording; None where there is none.
+def sidecars_of(path: Path, columns: ColumnMap | None) -> list[Path]:
+    """List the files of conditions beside a recording, which have its name or that of one of its files.
 
     Args:
-        path: of the recording.
+        path: of the recording, that with the command where it is in several files.
+        columns: its column map, if there is one.
 
     Raises:
-        InputError: for a file of that name that has neither conditions nor an arm nor a column map.
+        InputError: for a file of such a name that has neither conditions nor an arm nor a column map.
     """
-    beside = path.with_suffix(".toml")
-    if beside == path or beside.is_dir() or not os.path.lexists(beside):  # a link to nowhere is no absence
-        return None
+    files = files_of_recording(path, columns)
+    places = [path.with_name(f"{recording_name(path, columns)}.toml"), *(file.with_suffix(".toml") for file in files)]
+    return [place for place in dict.fromkeys(places) if place not in files and _states_conditions(place, path)]
+
+
+def _states_conditions(beside: Path, path: Path) -> bool:
+    """Whether there is a file of conditions beside a recording."""
+    if beside.is_dir() or not os.path.lexists(beside):  # a link to nowhere is no absence
+        return False
     table = read_toml(beside)
     if any(key in table for key in _OTHERS):
-        return None
+        return False
     if TABLE not in table:
         raise file_error(beside, f"has no [{TABLE}] table for {path.name} beside it; write conditions under a line [{TABLE}]")
-    return beside
+    return True
 
 
 def read_conditions(path: Path) -> dict[str, float]:

@@ -16,6 +16,7 @@ from flexarm_env.recordings.columns import CALIBRATED, ColumnMap
 from flexarm_env.recordings.copies import with_copies_noted
 from flexarm_env.recordings.episodes import check_episodes
 from flexarm_env.recordings.files import files_of
+from flexarm_env.recordings.files_read import files_read as files_of_reading
 from flexarm_env.recordings.joined import recording_files
 from flexarm_env.recordings.recording import Recording, with_distinct_names
 
@@ -41,13 +42,24 @@ def read_recordings(arm: Arm, paths: Sequence[Path], columns: Path | None, requi
         recordings = Recording.read_all(paths, columns, calibration(arm), require_signal)
     else:
         layout = _layout(arm)
-        files = _files(paths, layout, require_signal)
+        files = _recording_files(paths, layout, require_signal)
         distinct = with_distinct_names([one for file in files for one in _read(arm, file, layout, require_signal)])
         recordings = with_copies_noted(distinct)
         check_episodes(len(recordings), layout)
     for recording in recordings:
         _check_fits(arm, recording, require_signal)
     return recordings
+
+
+def files_read(arm: Arm, paths: Sequence[Path], columns: Path | None, require_signal: bool = True) -> list[Path]:
+    """List the files that `read_recordings` reads, beside the arm's and that of the map. Arguments as there."""
+    if columns is not None or not arm.columns:
+        layout = None if columns is None else load_columns(columns)
+        pairs = [(file, layout) for file in recording_files(paths, layout)]
+    else:
+        own = _layout(arm)
+        pairs = [(file, layout_of(file, own, require_signal)[0]) for file in _recording_files(paths, own, require_signal)]
+    return [one for file, layout in pairs for one in files_of_reading(file, layout)]
 
 
 def _layout(arm: Arm) -> ColumnMap:
@@ -58,7 +70,7 @@ def _layout(arm: Arm) -> ColumnMap:
         raise InputError(f"arm '{arm.name}': {error}") from None
 
 
-def _files(paths: Sequence[Path], columns: ColumnMap, require_signal: bool) -> list[Path]:
+def _recording_files(paths: Sequence[Path], columns: ColumnMap, require_signal: bool) -> list[Path]:
     """List the file of each recording in the order of the paths; where the arm's are in several files, others may stand alone."""
     if not columns.joins:
         return recording_files(paths, columns)

@@ -6,7 +6,7 @@ import os
 
 import numpy as np
 import pytest
-from cli_stand_ins import GOOD_ARM, OWN
+from cli_stand_ins import GOOD_ARM, HEADER, OWN, ROWS
 
 import flexarm_env
 from flexarm_env.arm import Arm
@@ -97,6 +97,62 @@ def test_nothing_that_is_read_or_written_is_written_over(flexarm, identify, runs
     assert "stdout" in flexarm.refused("simulate", "--save", "-")
     assert one.read_bytes() == before
     assert identify.log == []
+
+
+JOINED = """
+[columns]
+time = {column = "t", unit = "s"}
+current = {file = "*_command.csv", column = "i", unit = "A"}
+arm_angle = {file = "*_encoder.csv", column = "phi", unit = "rad"}
+"""
+
+
+@pytest.mark.parametrize("of_the_arm", [False, True])
+def test_no_file_that_belongs_to_a_recording_is_written_over(flexarm, identify, tmp_path, monkeypatch, of_the_arm):
+    """It is not on the command line: conditions beside a recording, and the other files of a joined one."""
+    (tmp_path / "run.csv").write_text(HEADER + ROWS)
+    (tmp_path / "m_command.csv").write_text("t,i\n0,1\n1,1\n2,0\n")
+    (tmp_path / "m_encoder.csv").write_text("t,phi\n0,0\n1,1\n2,2\n")
+    for name in ("run", "m", "m_encoder"):
+        (tmp_path / f"{name}.toml").write_text("[conditions]\npayload = '0.3 kg'\n")
+    (tmp_path / "map.toml").write_text(JOINED)
+    (tmp_path / "arm.toml").write_text(GOOD_ARM + JOINED)
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    how = ("--arm", "arm.toml") if of_the_arm else ("--columns", "map.toml")
+    monkeypatch.chdir(tmp_path)
+    for words in (
+        ["fit", "run.csv", "--save", "run.toml"],
+        ["compare", "run.csv", "--json", "run.toml"],
+        ["simulate", "--input", "run.csv", "--save", "new.csv", "--json", "run.toml"],
+        ["compare", "m_command.csv", *how, "--json", "m_encoder.csv"],
+        ["compare", "m_encoder.csv", *how, "--json", "m_command.csv"],
+        ["fit", "m_command.csv", *how, "--save", "m.toml"],
+        ["fit", "m_command.csv", *how, "--save", "m_encoder.toml"],
+        ["simulate", "--input", "m_command.csv", *how, "--save", "m_encoder.csv"],
+    ):
+        assert "already" in flexarm.refused(*words), words
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+    assert identify.log == []
+
+
+def test_the_info_of_a_data_set_is_not_written_over(flexarm, identify, tmp_path):
+    """It is found from the file, three folders above it."""
+    pytest.importorskip("pyarrow")
+    for folder in ("data/chunk-000", "meta"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "map.toml").write_text(MAP)
+    (tmp_path / "meta/info.json").write_text("{}")
+    file = tmp_path / "data/chunk-000/file-000.parquet"
+    file.write_text("not read before the places are checked")
+    for named in (file, tmp_path):
+        words = ["compare", named, "--columns", tmp_path / "map.toml", "--json", tmp_path / "meta/info.json"]
+        assert "already" in flexarm.refused(*words)
+
+
+def test_an_arm_beside_a_recording_may_be_saved_anew(flexarm, identify, tmp_path):
+    (tmp_path / "run.csv").write_text(HEADER + ROWS)
+    for _ in range(2):
+        assert flexarm("fit", tmp_path / "run.csv", "--save", tmp_path / "run.toml") == 0
 
 
 def test_an_arm_may_be_saved_in_its_own_file(flexarm, identify, runs, tmp_path):

@@ -62,6 +62,35 @@ def test_a_fault_in_it_is_told_with_its_name(tmp_path, content, words):
     assert len(str(caught.value).splitlines()) == 1
 
 
+JOINED = {
+    "time": {"column": "t", "unit": "s"},
+    "current": {"file": "*_command.csv", "column": "i", "unit": "A"},
+    "arm_angle": {"file": "*_encoder.csv", "column": "phi", "unit": "rad"},
+}
+
+
+@pytest.mark.parametrize("name", ["m", "m_command", "m_encoder"])
+def test_conditions_of_a_joined_recording_have_its_name_or_that_of_a_file(tmp_path, name):
+    path = save(tmp_path, "t,i\n0,1\n1,1\n", "m_command.csv")
+    save(tmp_path, "t,phi\n0,0\n1,1\n", "m_encoder.csv")
+    save(tmp_path, STATED, f"{name}.toml")
+    (run,) = Recording.read_all(tmp_path, JOINED)
+    assert (run.name, run.conditions["payload"]) == ("m", 0.3)
+    assert run.notes[-1].startswith(f"{name}.toml states payload = 0.3 kg")
+    save(tmp_path, "[conditions]\npayload = '0.3 kg'\n", "m.toml")
+    assert Recording.read(path, JOINED).conditions["payload"] == 0.3
+
+
+def test_two_files_of_conditions_that_differ_are_refused(tmp_path):
+    path = save(tmp_path, "t,i\n0,1\n1,1\n", "m_command.csv")
+    save(tmp_path, "t,phi\n0,0\n1,1\n", "m_encoder.csv")
+    save(tmp_path, "[conditions]\nkp = 3\n", "m.toml")
+    beside = save(tmp_path, "[conditions]\nkp = 4\n", "m_command.toml")
+    with pytest.raises(InputError) as caught:
+        Recording.read(path, JOINED)
+    assert str(caught.value) == f"{beside}: condition 'kp' is 4, but 3 in another file beside the recording; correct one"
+
+
 def test_a_command_that_no_column_states(tmp_path):
     path = save(tmp_path, "t;phi\n0;0\n10;9\n20;18\n")
     columns = {"delimiter": ";", "time": LOGGER["time"], "current": {"value": "20 mA"}, "arm_angle": LOGGER["arm_angle"]}

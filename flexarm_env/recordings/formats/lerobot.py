@@ -48,7 +48,8 @@ def with_info(path: Path, columns: ColumnMap) -> ColumnMap:
     """
     if path.suffix.lower() != ".parquet":
         return columns
-    info = _info(path)
+    place = info_of(path)
+    info = _info(place) if place is not None else None
     rate = _rate(info.get("fps", 0)) if info else 0.0
     features = info.get("features", {}) if info else None
     sources = {name: _numbered(name, source, features) for name, source in columns.sources.items()}
@@ -79,13 +80,16 @@ def exact_times(stamps: NDArray[np.float64], frames: NDArray[np.float64], rate: 
     return exact if (np.abs(stamps - exact) <= rounding).all() else stamps
 
 
-def _info(path: Path) -> Mapping[str, Any] | None:
-    """Read the info of the data set that a file is of; None for a file of none."""
-    if len(path.resolve().parents) < _DEPTH:
+def info_of(path: Path) -> Path | None:
+    """Find the info of the data set that a Parquet file is of; None for a file of none."""
+    if path.suffix.lower() != ".parquet" or len(path.resolve().parents) < _DEPTH:
         return None
     place = path.resolve().parents[_DEPTH - 1] / _INFO
-    if not place.is_file():
-        return None
+    return place if place.is_file() else None
+
+
+def _info(place: Path) -> Mapping[str, Any]:
+    """Read the info of a data set."""
     try:
         content = place.read_bytes() if place.stat().st_size <= _LARGEST_INFO else b""
         info = json.loads(content)
