@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 
 from flexarm_env import units
-from flexarm_env.errors import InputError, did_you_mean
+from flexarm_env.errors import InputError, did_you_mean, nearest
 from flexarm_env.recordings.messages import quoted
 
 CONDITIONS = {"payload": "kg", "start": "s"}
 
 # Possessive throughout, so that no line takes time that grows faster than its length.
-_CONDITION = re.compile(r"([A-Za-z_]\w*+)\s*+(?:\[([^\]]*+)\]\s*+)?([=:])\s*+(.*+)")
-_STATEMENT = re.compile(r"([A-Za-z_]\w*+)\s*+(?:\[([^\]]*+)\]\s*+)?(?:(?:is|was|of|->)(?!\w)|[=:]++)?+\s*+(.*+)")
-_VALUE = re.compile(r"([+-]?+(?:\d++(?:[.,]\d*+)?+|\.\d++)(?:[eE][+-]?+\d++)?+)\s*+([A-Za-zµμ]*+)(.*+)")
+_CONDITION = re.compile(r"([A-Za-z_]\w*+)\s*+(?:\[([^\]]*+)\]\s*+|\(([^()]*+)\)\s*+)?+([=:])\s*+(.*+)")
+_STATEMENT = re.compile(
+    r"([A-Za-z_]\w*+)\s*+(?:[\[(,;/]\s*+([A-Za-zµμ][^\]),;=:]*+)[\])]?+\s*+)?+(?:(?:is|was|of|->)(?!\w)|[=:,;]++)?+\s*+(.*+)"
+)
+_VALUE = re.compile(r"([+-]?+(?:\d++(?:\.\d*+|,\d++)?+|\.\d++)(?:[eE][+-]?+\d++)?+)[\s,;]*+([A-Za-zµμ]*+)(.*+)")
+#: What follows the number of a date, a time, a version or a share.
+_OF_A_DATE = re.compile(r"[-:./]\d")
 _LONGEST_UNIT = 10
 
 
 def add_condition(line: str, conditions: dict[str, float]) -> str:
     """Add the condition that a line such as `# payload = 0.3 kg` or `# payload [kg]: 0.3` states. Other remarks are skipped.
+
+    A unit stands in brackets or parentheses before the number, 1 for none. Empty cells at the end are a spreadsheet's padding.
 
     Args:
         line: the remark, with its mark.
@@ -31,12 +36,13 @@ def add_condition(line: str, conditions: dict[str, float]) -> str:
     Raises:
         InputError: for a condition that comes twice, is misspelt, has no right unit, or is written as a remark.
     """
-    text = line.lstrip("#").strip()
+    text = line.lstrip("#").rstrip(",; \t").strip()
     match = _CONDITION.fullmatch(text)
-    if match is None or (match[3] == ":" and match[1] not in CONDITIONS):
+    if match is None or (match[4] == ":" and match[1] not in CONDITIONS):
         _check_remark(text)
         return ""
-    name, value = match[1], f"{match[4]} {match[2] or ''}".strip()
+    name, unit = match[1], (match[2] or match[3] or "").strip()
+    value = match[5] if unit in ("", "1") else f"{match[5]} {unit}"
     if name in conditions:
         raise InputError(f"condition {quoted(name)} comes twice; keep one of the two")
     check_spelling(name)
@@ -47,9 +53,24 @@ def add_condition(line: str, conditions: dict[str, float]) -> str:
             conditions[name] = units.base_value(value)
         except InputError as error:  # "# trial = 3 good" is a remark
             return f"{quoted(text)} is read as a remark: {error}"
-    elif (number := _VALUE.fullmatch(value)) and number[2] and not re.search(r"\s", number[3]):
-        return f"{quoted(text)} is read as a remark: unknown unit {quoted(number[2] + number[3])}"
+    elif fault := _fault(value.strip("\"'")):
+        return f"{quoted(text)} is read as a remark: {fault}"
     return ""
+
+
+def _fault(value: str) -> str:
+    """Say why a value that begins as a quantity is none; "" for prose, a date or a time, which are no condition."""
+    match = _VALUE.fullmatch(value)
+    if match is None:
+        return ""
+    number, unit, rest = match.groups()
+    if unit and not re.search(r"\s", rest) and "," not in number:
+        return f"unknown unit {quoted(unit + rest)}"
+    if (unit and not units.is_unit(unit)) or (not unit and _OF_A_DATE.match(rest)):
+        return ""
+    return (
+        "it has a decimal comma; write a point" if "," in number else "write a number, with or without a unit, and nothing else"
+    )
 
 
 def unit_of(name: str, value: float) -> str:
@@ -77,14 +98,14 @@ def _check_remark(text: str) -> None:
         if match is None or name is None or value is None:
             continue
         number, unit, rest = value[1].replace(",", "."), value[2], value[3]
-        bare = not unit and not rest.strip() and match[1].lower() == name
+        bare = not unit and not rest.strip(" ,;") and match[1].lower() == name
         if bare or (0 < len(unit) < _LONGEST_UNIT and _measures(unit, CONDITIONS[name])):
             raise InputError(f"{quoted(part)} is a remark; did you mean '# {name} = {number} {unit or CONDITIONS[name]}'?")
 
 
 def _near(name: str) -> str | None:
     """Find the condition that a name misspells."""
-    return next(iter(difflib.get_close_matches(name.lower(), CONDITIONS, n=1, cutoff=0.8)), None)
+    return nearest(name.lower(), CONDITIONS, cutoff=0.8)
 
 
 def _measures(unit: str, target: str) -> bool:

@@ -156,6 +156,12 @@ def test_a_first_row_cut_off_at_its_start_is_named(tmp_path: Path) -> None:
         "payload 300 g",
         "payload 0.3",
         "start 5 s",
+        "payload, kg = 0.3",
+        "payload/kg = 0.3",
+        "payload,0.3,kg",
+        "payload;0.3 kg",
+        "payload;0,3;kg;;",
+        "payload (steel) 300 g",
     ],
 )
 def test_a_condition_in_other_words_is_not_lost(tmp_path: Path, remark: str) -> None:
@@ -175,10 +181,36 @@ def test_a_condition_in_other_words_is_not_lost(tmp_path: Path, remark: str) -> 
         "state: 3",
         "rate: 500 Hz",
         "payload 2 of 3",
+        "payload, steel",
+        "payload/arm ratio = 3",
+        "start (of the run) by hand",
     ],
 )
 def test_other_remarks_are_let_be(tmp_path: Path, remark: str) -> None:
     assert Recording.read(save(tmp_path, f"# {remark}\n{GOOD}")).conditions == {}
+
+
+@pytest.mark.parametrize(
+    ("remark", "found"),
+    [
+        ("payload (kg) = 0.3", {"payload": 0.3}),
+        ("payload (g): 300", {"payload": 0.3}),
+        ("payload = 0.3 kg,,,", {"payload": 0.3}),
+        ("rotor = 0.02 kg m^2,,,,,", {"rotor": 0.02}),
+        ("kp = 400;;", {"kp": 400.0}),
+        ("kp [1] = 400", {"kp": 400.0}),
+        ("kp (V/deg) = 2", {"kp": pytest.approx(360.0 / np.pi)}),
+    ],
+)
+def test_a_condition_as_headers_and_spreadsheets_write_it(tmp_path: Path, remark: str, found: dict[str, float]) -> None:
+    run = Recording.read(save(tmp_path, f"# {remark}\n{GOOD}"))
+    assert run.conditions == found
+    assert run.notes == ()
+
+
+def test_a_name_that_is_no_word_costs_no_comparison(tmp_path: Path) -> None:
+    with ends():
+        assert Recording.read(save(tmp_path, f"# {'payload' * 3_000_000} = 3\n{GOOD}")).conditions
 
 
 def test_the_hint_can_be_copied(tmp_path: Path) -> None:
@@ -252,11 +284,17 @@ def test_no_quantity_takes_longer_than_it_is(text: str) -> None:
         ("# res = 4.2 ohmm", "row 1: 'res = 4.2 ohmm' is read as a remark: unknown unit 'ohmm'"),
         ("# kp = 6 V/radd", "unknown unit 'V/radd'"),
         ("# rotor = 30 gcm2", "'rotor = 30 gcm2' is read as a remark: unknown unit 'gcm2'"),
+        ("# rotor = 0,02 kg m^2", "'rotor = 0,02 kg m^2' is read as a remark: it has a decimal comma; write a point"),
+        ("# kp = 0,3", "'kp = 0,3' is read as a remark: it has a decimal comma; write a point"),
+        ('# kp = "400"', "is read as a remark: write a number, with or without a unit, and nothing else"),
+        ("# kp = 400 # of the drive", "is read as a remark: write a number, with or without a unit, and nothing else"),
+        ("# kp = 4e", "unknown unit 'e'"),
         ("# rotor = 30 g cm^2", ""),
         ("# kp = 6", ""),
         ("# day = 2024-05-01", ""),
         ("# at = 10:30", ""),
         ("# part = 3 of 12 runs", ""),
+        ("# made = 1/2/2024", ""),
         ("# rig: no. 5", ""),
     ],
 )
