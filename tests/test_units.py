@@ -70,6 +70,8 @@ def test_making_the_registry_warns_of_nothing(caplog):
         ("kg", "kg"),
         ("1e999 kg", "kg"),
         ("1 V", ""),
+        ("4e", "C"),
+        ("4e-", "C"),
         ("5 V/Hz", "V*s/rad"),
         ("20 degC", "K"),
         ("3 kg kg", "kg"),

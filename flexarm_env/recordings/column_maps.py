@@ -20,6 +20,8 @@ from flexarm_env.recordings.messages import file_error
 
 _SETTINGS: dict[str, type] = {"delimiter": str, "header_prefix": str, "skip_rows": int, "decimal": str}
 _OTHERS = (*_SETTINGS, "conditions", "episode_index")
+#: Tables of a file of a map, and the one by which a file is an arm's, which has others.
+_TABLES, _OF_AN_ARM = ("columns", "controller"), "drive"
 
 
 def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap) -> ColumnMap:
@@ -61,10 +63,30 @@ def load_columns(columns: str | os.PathLike[str] | Mapping[str, Any] | ColumnMap
     if not isinstance(table, dict):
         raise InputError(f"{path}: has no [columns] table; put the map under a line [columns]")
     try:
+        check_tables(tables)
         layout = _column_map(table)
         return replace(layout, controller=_law(tables["controller"], layout)) if "controller" in tables else layout
     except InputError as error:
         raise file_error(path, error) from None
+
+
+def check_tables(tables: Mapping[str, Any]) -> None:
+    """Refuse what stands beside the `[columns]` of a file and would be read as nothing; an arm file has tables of its own.
+
+    Raises:
+        InputError: for a key that such a file does not have.
+    """
+    if _OF_AN_ARM in tables:
+        return
+    if "conditions" in tables:
+        raise InputError(
+            "has [conditions] beside [columns], which is read for no recording; write run.toml beside run.csv with"
+            " [conditions] alone, or columns of conditions under [columns.conditions]"
+        )
+    for key in tables:
+        if key not in _TABLES:
+            where = f"; write it under the line [columns], in which {key!r} stands" if key in (*UNITS, *_OTHERS) else ""
+            raise InputError(f"unknown key {key!r} beside [columns]{where or did_you_mean(str(key), _TABLES)}")
 
 
 def _column_map(table: Mapping[str, Any]) -> ColumnMap:

@@ -11,6 +11,7 @@ from flexarm_env import units
 from flexarm_env.errors import InputError
 from flexarm_env.files import read_toml
 from flexarm_env.recordings.checks import check_conditions
+from flexarm_env.recordings.column_maps import check_tables
 from flexarm_env.recordings.columns import ColumnMap
 from flexarm_env.recordings.conditions import CONDITIONS, unit_of
 from flexarm_env.recordings.joined import files_of_recording, recording_name
@@ -71,10 +72,20 @@ def _states_conditions(beside: Path, path: Path) -> bool:
         return False
     table = read_toml(beside)
     if any(key in table for key in _OTHERS):
+        _check_map(beside, table)
         return False
     if TABLE not in table:
         raise file_error(beside, f"has no [{TABLE}] table for {path.name} beside it; write conditions under a line [{TABLE}]")
     return True
+
+
+def _check_map(beside: Path, table: Mapping[str, Any]) -> None:
+    """Refuse a column map beside a recording that hides conditions."""
+    try:
+        if TABLE in table and "columns" in table:
+            check_tables(table)
+    except InputError as error:
+        raise file_error(beside, error) from None
 
 
 def read_conditions(path: Path) -> dict[str, float]:

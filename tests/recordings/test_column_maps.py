@@ -25,6 +25,30 @@ def test_columns_from_toml(tmp_path: Path) -> None:
     assert load_columns(table) == load_columns(LOGGER)
 
 
+@pytest.mark.parametrize(
+    ("above", "below", "words"),
+    [
+        ("delimiter = ';'\n", "", "unknown key 'delimiter' beside [columns]; write it under the line [columns]"),
+        (
+            "",
+            "[controllers.arm_angle]\nproportional = 3\n",
+            "unknown key 'controllers' beside [columns]; did you mean 'controller'",
+        ),
+        ("", "[column]\n", "unknown key 'column' beside [columns]; did you mean 'columns'?"),
+        (
+            "",
+            "[conditions]\npayload = '0.3 kg'\n",
+            "has [conditions] beside [columns], which is read for no recording; write run",
+        ),
+    ],
+)
+def test_what_stands_beside_a_map_is_not_passed_over(tmp_path: Path, above: str, below: str, words: str) -> None:
+    table = save(tmp_path, f"{above}[columns]\narm_angle = {{sign = -1}}\n{below}", "map.toml")
+    with pytest.raises(InputError) as caught:
+        load_columns(table)
+    assert str(caught.value).startswith(f"{table}: {words}")
+
+
 def test_semicolons_decimal_commas_and_signs(tmp_path: Path) -> None:
     path = save(tmp_path, "note;t;i;phi\nx;100,5;1500,0;90\ny;101,5;-2,5E1;0\n")
     recording = Recording.read(path, LOGGER)

@@ -36,6 +36,15 @@ def test_an_arm_or_a_map_beside_a_recording_states_no_conditions(tmp_path, conte
     assert Recording.read(save(tmp_path, GOOD)).conditions == {}
 
 
+def test_a_map_beside_a_recording_hides_no_conditions(tmp_path):
+    beside = save(tmp_path, "[columns]\narm_angle = {sign = -1}\n[conditions]\npayload = '0.3 kg'\n", "run.toml")
+    path = save(tmp_path, GOOD)
+    for columns in (None, beside):
+        with pytest.raises(InputError, match=r"has .conditions. beside .columns.") as caught:
+            Recording.read(path, columns)
+        assert str(caught.value).startswith(f"{beside}: ")
+
+
 @pytest.mark.parametrize(
     ("content", "words"),
     [
