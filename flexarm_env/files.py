@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import stat
 import tomllib
 import uuid
@@ -14,6 +15,12 @@ from flexarm_env.errors import InputError
 
 LARGEST_TOML = 1_000_000
 LARGEST_JSON = 100_000_000
+#: Tables within tables of a TOML file: no file of this program has ten.
+DEEPEST_TOML = 50
+# A dotted key of tens of thousands of parts takes the parser time and memory that grow with their square. Possessive, and begun
+# at the start of a word alone, so that no line takes time that grows faster than its length.
+_PART = r"(?:[\w-]++|\"[^\"\n]*+\"|'[^'\n]*+')"
+_LONG_KEY = re.compile(rf"(?<![\w-])(?:{_PART}[ \t]*+\.[ \t]*+){{{DEEPEST_TOML}}}")
 
 
 def write_whole(path: Path, content: str | bytes) -> None:
@@ -85,11 +92,24 @@ def read_toml(path: Path, remedy: str = "name a TOML file") -> dict[str, Any]:
     """
     content = read_whole(path, LARGEST_TOML, remedy)
     try:
-        return tomllib.loads(content.decode("utf-8-sig"))
+        text = content.decode("utf-8-sig")
+        tables = None if _LONG_KEY.search(text) else tomllib.loads(text)
     except RecursionError:
-        raise InputError(f"{path}: is not TOML that can be read: its values are nested too deeply") from None
+        tables = None
     except ValueError as error:
         raise InputError(f"{path}: is not TOML: {' '.join(str(error).split())}") from None
+    if tables is None or _is_deep(tables):
+        raise InputError(f"{path}: is not TOML that can be read: its values are nested too deeply")
+    return tables
+
+
+def _is_deep(tables: dict[str, Any]) -> bool:
+    """Whether tables and lists lie deeper in each other than `DEEPEST_TOML`; Python could not even write those in a message."""
+    level: list[Any] = [tables]
+    for _ in range(DEEPEST_TOML):
+        inside = (value for one in level for value in (one.values() if isinstance(one, dict) else one))
+        level = [value for value in inside if isinstance(value, dict | list)]
+    return bool(level)
 
 
 def read_json(path: Path, remedy: str) -> dict[str, Any]:
