@@ -17,11 +17,18 @@ from flexarm_env.recordings.columns import ColumnMap
 from flexarm_env.recordings.messages import quoted
 from flexarm_env.sensors import known_sensors
 
+#: Cells of a line: no logger has as many columns.
+MOST_CELLS = 100_000
+
 # Possessive, so that no cell takes time that grows faster than its length.
 _DECIMAL_COMMA = re.compile(r"\s*+[+-]?+\d++,\d++\s*+")
 _COMMA_AND_THREE = re.compile(r"\s*+[+-]?+[1-9]\d{0,2}+(?:,\d{3})++\s*+")
 #: Of a condition, such as whether the torque of a servo is enabled.
 _TRUTH = {"true": "1", "false": "0"}
+#: Blanks and tabs part cells; a thin or a hard blank, which marks thousands, does not, though Python splits there.
+_WORD = re.compile(r"[^ \t]+")
+#: A row in which numpy's reader parts cells by blanks as `_WORD` does, and which has no quotes.
+_PLAIN = re.compile(r"[\t !#-~]*+")
 _DATE = re.compile(r"\s*+\d{1,2}[/.-]\d{1,2}[/.-]\d{2,4}[T ]")
 
 
@@ -36,10 +43,12 @@ def cut(line: str, delimiter: str) -> list[str]:
     Raises:
         InputError: for a cell that no CSV file has.
     """
+    if line.count(delimiter) > MOST_CELLS:
+        raise InputError(f"has {line.count(delimiter)} {delimiter!r}, the limit is {MOST_CELLS} cells; is this a table?")
     if delimiter == " ":
         if '"' not in line:
-            return line.split()
-        line = " ".join(line.split())
+            return _WORD.findall(line)
+        line = " ".join(_WORD.findall(line))
     try:
         return next(csv.reader([line], delimiter=delimiter), [])
     except csv.Error as error:
@@ -49,7 +58,7 @@ def cut(line: str, delimiter: str) -> list[str]:
 def count_cells(row: str, delimiter: str) -> int:
     """Count the cells of a row; 0 if it cannot be cut."""
     if '"' not in row:
-        return len(row.split()) if delimiter == " " else row.count(delimiter) + 1
+        return len(_WORD.findall(row)) if delimiter == " " else row.count(delimiter) + 1
     try:
         return len(cut(row, delimiter))
     except InputError:
@@ -97,7 +106,7 @@ def read_numbers(
     """
     # numpy's reader is fast, but locates no fault and checks no width: Python reads again any rows that are not plain.
     delimiter = layout.delimiter
-    plain = delimiter != " " or not any('"' in row for row in rows)
+    plain = delimiter != " " or all(map(_PLAIN.fullmatch, rows))
     if plain and even and max(labels) < width:
         texts = rows if layout.decimal == "." else [_point(row, layout.decimal) for row in rows]
         read = _quickly(texts, delimiter, list(labels))

@@ -79,6 +79,12 @@ def test_labview_files_are_read(tmp_path: Path, text: str) -> None:
     assert recording.signals["arm_angle"].tolist() == [2.5, 3, 4]
 
 
+def test_the_clock_of_a_channel_that_is_not_read_does_no_harm(tmp_path: Path) -> None:
+    third = SEGMENT.replace("0.25\t0.25", "9\t0.25\t0.25").replace("0.5\t0.5", "0\t0.5\t0.5").replace("Motor", "Door\tMotor")
+    path = save(tmp_path, FILE.replace("One", "No") + third + "\t7\t1\t2\n\t7\t1\t2\n", "run.lvm")
+    assert Recording.read(path, LABVIEW).time.tolist() == [0.0, 0.25]
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -90,6 +96,14 @@ def test_labview_files_are_read(tmp_path: Path, text: str) -> None:
         ("t,i\n0,1\n", ["row 1", "'t,i'", "LabVIEW Measurement"]),
         (FILE + SEGMENT + ROWS + SEGMENT.replace("Encoder", "Gage") + ROWS, [f"row {2 * HIGH - 10}", "other columns than"]),
         (FILE.replace("Tab", "Pipe") + SEGMENT + ROWS, ["Pipe", "Tab, Comma"]),
+        (
+            FILE.replace("One", "No") + SEGMENT.replace("0.25\t0.25", "0.25\t0.5") + "\t1\t2\n\t1\t2\n",
+            ["its channels have the times 0.5 + k 0.25 and 0.5 + k 0.5", "a file of its own"],
+        ),
+        (
+            FILE.replace("One", "No") + SEGMENT.replace("X0\t0.5\t0.5", "X0\t0.5\t0.75") + "\t1\t2\n\t1\t2\n",
+            ["its channels have the times 0.5 + k 0.25 and 0.75 + k 0.25"],
+        ),
         (FILE.replace("One", "No") + SEGMENT.replace("Delta_X", "Delta") + "\t1\t2\n", ["neither times nor", "Delta_X"]),
         (
             FILE + SEGMENT.replace("Motor", "Moto") + ROWS,

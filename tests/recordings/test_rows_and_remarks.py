@@ -135,6 +135,40 @@ def test_remarks_after_the_last_row_count_as_those_before_the_header(tmp_path: P
     assert "has no samples" in refusal(save(tmp_path, f"{HEADER}\n# end of log\n"))
 
 
+@pytest.mark.parametrize("delimiter", [",", ";", "\t", " "])
+@pytest.mark.parametrize("cell", ["#N/A", "#DIV/0!", "########"])
+def test_a_last_row_with_an_error_of_a_spreadsheet_is_no_remark(tmp_path: Path, delimiter: str, cell: str) -> None:
+    rows = [["0", "1", "0.5"], ["0.1", "2", "0.6"], [cell, "3", "0.7"]]
+    table = {"delimiter": delimiter, **by_index(delimiter, [0, 1, 2])}
+    for last in (rows[2], [cell, "#N/A", "#N/A"]):
+        message = refusal(save(tmp_path, written([*rows[:2], last], table)), columns=table)
+        assert message.startswith(f"row 3, column 'time': '{cell}' is not a number")
+
+
+@pytest.mark.parametrize(
+    ("delimiter", "remark"),
+    [(",", "# stopped by hand,,"), (" ", "# stopped by"), (" ", "# stopped by hand"), (" ", "# kp = 3")],
+)
+def test_a_remark_of_as_many_cells_is_none_of_the_rows(tmp_path: Path, delimiter: str, remark: str) -> None:
+    table = by_index(delimiter, [0, 1, 2])
+    recording = Recording.read(save(tmp_path, written([["0", "1", "2"], ["1", "1", "2"]], table) + remark + "\n"), table)
+    assert len(recording) == 2
+
+
+@pytest.mark.parametrize("mark", ["\u00a0", "\u2009", "\u202f", "\x1f", "\x0b"])
+def test_a_mark_of_thousands_parts_no_cells(tmp_path: Path, mark: str) -> None:
+    for rows in ("0 1{}000 2\n1 1{}001 2\n", "0 1{}000\n1 1{}001\n"):
+        message = refusal(save(tmp_path, rows.replace("{}", mark)), columns=by_index(" ", [0, 1, 2]))
+        assert "is not a number" in message or "the rows have 2 cells" in message
+
+
+def test_a_line_of_millions_of_cells_is_refused_at_once(tmp_path: Path) -> None:
+    with ends():
+        assert "the limit is 100000 cells" in refusal(save(tmp_path, "," * 20_000_000))
+        path = save(tmp_path, "0" + ",0" * 200_000 + "\n1" + ",1" * 200_000)
+        assert "the limit is 100000 cells" in refusal(path, columns=by_index(",", [0, 1, 2]))
+
+
 def test_a_first_row_cut_off_at_its_start_is_named(tmp_path: Path) -> None:
     message = refusal(save(tmp_path, "20\n1 2 11\n2 1 12\n"), columns=by_index(" ", [0, 1, 2]))
     assert "row 1: has 1 cells where 3 are expected; is the row cut off?" in message

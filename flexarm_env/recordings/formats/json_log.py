@@ -25,6 +25,8 @@ Floats = NDArray[np.float64]
 _PATH = re.compile(r"\w++(?:\.\w++|\[\d{1,9}+\])*+")
 _STEP = re.compile(r"(\w+)|\[(\d+)\]")
 _MOST_SHOWN = 12
+#: Parts of a log, each of which takes many times its length in memory: a gigabyte is full of as many.
+_MOST = {"objects and lists": (b"{[", 4_000_000), "values": (b",", 30_000_000)}
 
 
 def read(content: bytes, columns: ColumnMap | None) -> Table:
@@ -40,6 +42,10 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
     Raises:
         InputError: for content that is no JSON, and for a path that leads to no numbers.
     """
+    for what, (marks, most) in _MOST.items():
+        count = sum(content.count(mark) for mark in marks)
+        if count > most:
+            raise InputError(f"has {count} {what}, the limit is {most}; cut it into shorter recordings")
     try:
         log = json.loads(content)
     except (ValueError, RecursionError) as error:

@@ -84,11 +84,16 @@ def _clocks(header: Sequence[str], layout: ColumnMap) -> list[int]:
     every = [number for number, cell in enumerate(header) if cell == _TIME]
     if len(every) < 2:
         return []
+    channels = _channels(header, layout)
+    return sorted({max(clock for clock in every if clock < channel) for channel in channels if channel > every[0]})
+
+
+def _channels(header: Sequence[str], layout: ColumnMap) -> list[int]:
+    """List the columns that a map names, without those of time."""
     places: dict[str | int | float, int] = {cell: number for number, cell in enumerate(header)}
     places |= {number: number for number in range(len(header))}
     named = [source.place for name, source in layout.sources.items() if quantity_of(name) != "time"]
-    channels = [places[place] for place in named if place in places]
-    return sorted({max(clock for clock in every if clock < channel) for channel in channels if channel > every[0]})
+    return sorted({places[place] for place in named if place in places})
 
 
 def _layout(lines: Sequence[str], columns: ColumnMap) -> tuple[ColumnMap, bool]:
@@ -99,18 +104,18 @@ def _layout(lines: Sequence[str], columns: ColumnMap) -> tuple[ColumnMap, bool]:
         raise InputError(f"has the separator {quoted(line)}; save it with one of {', '.join(_SEPARATORS)}")
     tags = _tags(lines, delimiter)
     # A comma that separates cells cannot be the decimal mark, and its own tag would be cut in two.
-    decimal = "," if delimiter != "," and tags.get("Decimal_Separator", ".") == "," else "."
-    return replace(columns, delimiter=delimiter, decimal=decimal), tags.get("X_Columns", "One") == "No"
+    decimal = "," if delimiter != "," and tags.get("Decimal_Separator", ["."])[0] == "," else "."
+    return replace(columns, delimiter=delimiter, decimal=decimal), tags.get("X_Columns", ["One"])[0] == "No"
 
 
-def _tags(lines: Sequence[str], delimiter: str) -> dict[str, str]:
-    """Read the tags of a section up to its end, each with its first value."""
+def _tags(lines: Sequence[str], delimiter: str) -> dict[str, list[str]]:
+    """Read the tags of a section up to its end, each with its values, one for each channel."""
     found = {}
     for line in lines:
         if line.startswith(_END):
             break
         name, _, value = line.partition(delimiter)
-        found[name.strip()] = value.split(delimiter)[0].strip()
+        found[name.strip()] = [cell.strip() for cell in value.split(delimiter)]
     return found
 
 
@@ -128,9 +133,8 @@ def _segments(lines: Sequence[str], layout: ColumnMap, evenly: bool) -> Iterator
         header = [cell.strip() for cell in cut(lines[places[0]], layout.delimiter)]
         rows = [_uncommented(lines[row], header, layout.delimiter) for row in places[1:]]
         if evenly and _TIME in header:
-            rows = _with_times(
-                rows, header.index(_TIME), _tags(lines[tagged[number] :] if tagged else [], layout.delimiter), layout
-            )
+            tags = _tags(lines[tagged[number] :] if tagged else [], layout.delimiter)
+            rows = _with_times(rows, header, tags, layout)
         yield _Segment(header[:-1] if header[-1] == _COMMENT else header, places[0], rows, places[1:])
 
 
@@ -141,12 +145,21 @@ def _uncommented(row: str, header: Sequence[str], delimiter: str) -> str:
     return row.rpartition(delimiter)[0] if '"' not in row else delimiter.join(cut(row, delimiter)[:-1])
 
 
-def _with_times(rows: Sequence[str], place: int, tags: Mapping[str, str], layout: ColumnMap) -> list[str]:
-    """Write the times X0 + k Delta_X into the empty cells of rows."""
+def _with_times(rows: Sequence[str], header: Sequence[str], tags: Mapping[str, list[str]], layout: ColumnMap) -> list[str]:
+    """Write the times X0 + k Delta_X of the channels that are read into the empty cells of rows."""
+    place = header.index(_TIME)
+    channels = [column - place - 1 for column in _channels(header, layout) if column > place] or [0]
     try:
-        first, step = (float(tags[name].replace(layout.decimal, ".")) for name in ("X0", "Delta_X"))
-    except (KeyError, ValueError):
+        clocks = {
+            channel: tuple(float(tags[name][channel].replace(layout.decimal, ".")) for name in ("X0", "Delta_X"))
+            for channel in channels
+        }
+    except (KeyError, IndexError, ValueError):
         raise InputError("has neither times nor an X0 and a Delta_X; save it with X columns, or give time a rate") from None
+    if len(set(clocks.values())) > 1:
+        listed = " and ".join(f"{first:g} + k {step:g}" for first, step in sorted(set(clocks.values())))
+        raise InputError(f"its channels have the times {listed}; write each channel to a file of its own, and name it by 'file'")
+    first, step = clocks[channels[0]]
     timed = []
     for number, row in enumerate(rows):
         cells = row.split(layout.delimiter)

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from flexarm_env import units
 from flexarm_env.errors import InputError
-from flexarm_env.recordings.cells import count_cells, cut, is_blank, is_number, read_numbers, usual_width
+from flexarm_env.recordings.cells import MOST_CELLS, count_cells, cut, is_blank, is_number, read_numbers, usual_width
 from flexarm_env.recordings.columns import ColumnMap
 from flexarm_env.recordings.conditions import add_condition
 from flexarm_env.recordings.formats.base import Format
@@ -37,7 +37,7 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
     header, body = _header(lines, first, layout)
     body += bool(header) and body < len(lines) and states_units(lines[body], header, body, layout)
     rows = [row for row in range(body, len(lines)) if not is_blank(lines[row], layout.delimiter)]
-    while rows and lines[rows[-1]].lstrip().startswith("#"):
+    while rows and _is_remark(lines[rows[-1]], lines[rows[0]], layout):
         notes += _add_remark(lines, rows.pop(), conditions)
     table = read_rows([lines[row] for row in rows], rows, header, body, layout)
     return replace(table, conditions=conditions, notes=tuple(notes))
@@ -61,6 +61,8 @@ def read_rows(rows: list[str], places: Sequence[int], header: list[str], body: i
         raise InputError(f"has no samples after row {body}; it needs at least two rows of numbers")
     labels = {int(source.place): name for name, source in sources.items()}
     counts = [count_cells(row, layout.delimiter) for row in rows]
+    if max(counts) > MOST_CELLS:
+        raise InputError(f"has rows of {max(counts)} cells, the limit is {MOST_CELLS}; is the delimiter right?")
     width = len(header) if layout.refines else usual_width(counts)
     if any(source.key == "column" for source in layout.sources.values()):
         _check_header(header, body, labels, width, layout.delimiter)
@@ -147,6 +149,24 @@ def _add_remark(lines: Sequence[str], row: int, conditions: dict[str, float]) ->
         return [f"row {row + 1}: {note}"] if note else []
     except InputError as error:
         raise InputError(f"row {row + 1}: {error}") from None
+
+
+def _is_remark(line: str, first: str, layout: ColumnMap) -> bool:
+    """Whether a line after the rows is a remark, and no row whose first cell is a spreadsheet's error, such as #N/A.
+
+    Args:
+        line: of the file.
+        first: the first line after the header.
+        layout: delimiter and decimal mark.
+    """
+    if not line.lstrip().startswith("#"):
+        return False
+    if first.lstrip().startswith("#") or count_cells(line, layout.delimiter) != count_cells(first, layout.delimiter):
+        return True
+    _, *others = cut(line, layout.delimiter)
+    if layout.delimiter == " ":  # a remark of as many words
+        return not all(is_number(cell, layout.decimal) or cell.startswith("#") for cell in others)
+    return not any(cell.strip() for cell in others)  # those that a spreadsheet adds
 
 
 def _header(lines: Sequence[str], first: int, layout: ColumnMap) -> tuple[list[str], int]:
