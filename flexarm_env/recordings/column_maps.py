@@ -126,6 +126,8 @@ def _check_kinds(columns: ColumnMap) -> None:
     for name, source in columns.conditions.items():
         if source.split and columns.joins:
             raise InputError(f"[columns] conditions.{name}: split is of a run in one file; leave it out, or write mean = true")
+    if columns.joins and columns.episodes:
+        raise InputError("[columns]: has episode_index, which is of one file of episodes, and 'file'; keep one of the two")
     by_file: dict[str, set[str]] = {}
     for name, source in (columns.sources | columns.conditions).items():
         if source.key == "header" and not columns.refines:

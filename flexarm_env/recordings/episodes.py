@@ -18,9 +18,12 @@ def episodes_of(table: Table, name: str, columns: ColumnMap | None) -> dict[str,
         columns: its column map.
 
     Raises:
-        InputError: for an episode of one row, and for one whose rows do not follow each other.
+        InputError: for an episode of one row, for one whose rows do not follow each other, and for a file of none that the map
+            names.
     """
     if not len(table.episodes):
+        if columns is not None and columns.episodes:
+            raise InputError("has no episodes, but [columns] names some by episode_index; leave it out")
         return {name: table}
     numbers = np.asarray(table.episodes)
     first = np.flatnonzero(np.diff(numbers, prepend=numbers[0] - 1))

@@ -72,7 +72,7 @@ def test_a_signal_may_be_absent_in_some_entries(tmp_path):
         ("entries[9].q", "finds no '[9]' in a list of 6 elements"),
         ("motor", "'motor' leads to '\"small\"', not to a number"),
         ("entries..q", "'entries..q' is no path; write one such as 'entries.position'"),
-        ("gains.kp", "lengths differ"),
+        ("entries[0].t", "lengths differ"),
     ],
 )
 def test_a_path_that_leads_to_no_numbers_is_refused(tmp_path, path, words):
@@ -95,6 +95,32 @@ def test_a_command_is_needed_in_every_entry(tmp_path):
     assert "column 'voltage': 'entries.u' finds no 'u' in an object with 't', 'q', 'on'" in refusal(
         written(tmp_path, content), columns=MAP
     )
+
+
+@pytest.mark.parametrize(("name", "key"), [("time", "t"), ("voltage", "u"), ("arm_angle", "q")])
+def test_true_and_false_are_numbers_of_a_condition_alone(tmp_path, name, key):
+    content = log()
+    content["entries"][3][key] = [0.0, True] if key == "q" else True
+    message = refusal(written(tmp_path, content), columns=MAP)
+    assert message == f"column '{name}': '{MAP[name]['variable']}' leads to 'true', not to a number"
+
+
+def test_a_key_that_comes_twice_is_refused(tmp_path):
+    text = json.dumps(log()).replace('"u": 3.0', '"u": 3.0, "t": 9')
+    assert refusal(save(tmp_path, text, "run.json"), columns=MAP) == "an object has 't' twice; keep one of the two"
+
+
+def test_two_quantities_of_one_variable_are_refused(tmp_path):
+    table = MAP | {"arm_angle": MAP["voltage"] | {"unit": "rad"}}
+    message = refusal(written(tmp_path, log()), columns=table)
+    assert message == "columns 'voltage' and 'arm_angle': both map to 'entries.u'; correct one of them"
+
+
+@pytest.mark.parametrize(("text", "what"), [("{},", "objects and lists"), ("0,", "values")])
+def test_millions_of_parts_are_refused_before_they_are_read(tmp_path, monkeypatch, text, what):
+    monkeypatch.setattr(json, "loads", lambda *_, **__: pytest.fail("is read"))
+    content = "[" + text * (5_000_000 if what == "objects and lists" else 31_000_000) + "0]"
+    assert f" {what}, the limit is " in refusal(save(tmp_path, content, "run.json"), columns=MAP)
 
 
 def test_a_condition_that_changes_is_refused(tmp_path):

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from recording_files import refusal
+from recording_files import GOOD, refusal, save
 
 from flexarm_env import Arm, InputError, Recording
 from flexarm_env.lab.uploads import read_upload
@@ -80,6 +80,16 @@ def test_episodes_are_picked_by_their_number(tmp_path: Path) -> None:
     for wrong in (-1, True, "1", [1, 1], [0.5]):
         with pytest.raises(InputError, match="episode_index: is"):
             Recording.read(file, {**MAP, "episode_index": wrong})
+
+
+def test_an_episode_of_a_file_without_episodes_is_refused(tmp_path: Path) -> None:
+    message = refusal(save(tmp_path, GOOD), columns={"arm_angle": {"sign": -1}, "episode_index": 7})
+    assert message == "has no episodes, but [columns] names some by episode_index; leave it out"
+    joined = {
+        name: {"file": f"*_{name}.csv", "column": "x", "unit": unit} for name, unit in (("current", "A"), ("arm_angle", "rad"))
+    }
+    with pytest.raises(InputError, match="has episode_index, which is of one file of episodes, and 'file'"):
+        Recording.read_all(tmp_path, {"time": {"column": "t", "unit": "s"}, **joined, "episode_index": 7})
 
 
 def test_an_arms_own_map_and_an_upload_read_episodes(tmp_path: Path) -> None:

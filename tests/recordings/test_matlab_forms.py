@@ -282,7 +282,7 @@ def test_a_struct_that_holds_a_function_and_text_is_read(tmp_path: Path) -> None
 def test_a_bomb_is_refused(tmp_path: Path) -> None:
     path = save(tmp_path, written(True, t=TIME, u=VOLTS, zeros=np.zeros(40_000_000)), "run.mat")
     assert path.stat().st_size < 10_000_000
-    assert "256 MB once unpacked" in refusal(path, columns=entries("t", "u", "u"))
+    assert "256 MB once unpacked" in refusal(path, columns=entries("t", "u", "zeros"))
 
 
 leaves = st.one_of(

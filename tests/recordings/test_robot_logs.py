@@ -101,6 +101,14 @@ def test_two_quantities_of_one_parquet_column_are_refused(tmp_path: Path) -> Non
     )
 
 
+def test_true_and_false_in_parquet_are_those_of_a_condition(tmp_path: Path) -> None:
+    table = {name: {"column": name[0], "unit": unit} for name, unit in (("time", "s"), ("current", "A"), ("arm_angle", "rad"))}
+    path = parquet(tmp_path / "run.parquet", t=TIMES, c=np.ones(N, bool), a=TIMES, x=np.zeros(N))
+    assert refusal(path, columns=table) == "column 'current': is 'bool', no numbers; name another"
+    table |= {"current": {"column": "x", "unit": "A"}, "conditions": {"on": {"column": "c", "unit": "1"}}}
+    assert Recording.read(path, table).conditions == {"on": 1.0}
+
+
 def test_parquet_by_a_map_with_lists_and_timestamps(tmp_path: Path) -> None:
     arrow = pytest.importorskip("pyarrow")
     path = parquet(

@@ -76,6 +76,8 @@ class Format:
                     f"is a {self.name}, but [columns] has 'row' or 'index' beside the {source.key} of '{name}'; "
                     f"write the element behind its name, as {source.place}[0]"
                 )
+        if columns is not None:
+            _refuse_twins(columns)
 
     def _with_conditions(self, content: bytes, columns: ColumnMap) -> Table:
         """Read the columns of conditions beside the others: one number throughout, a mean, or numbers that change in steps."""
@@ -108,6 +110,15 @@ class Format:
             conditions[name] = base_value(number, source)
         values = {name: numbers for name, numbers in table.values.items() if name not in columns.conditions}
         return replace(table, values=values, conditions=conditions, changing=changing, notes=tuple(notes))
+
+
+def _refuse_twins(columns: ColumnMap) -> None:
+    """Refuse a map by which two quantities are one variable; headers refuse two of one column."""
+    found: dict[tuple[str | int | float, int | None, int | None], str] = {}
+    for name, source in (columns.sources | columns.conditions).items():
+        twin = found.setdefault((source.place, source.row, source.cut), name) if source.key == "variable" else name
+        if twin != name:
+            raise InputError(f"columns '{twin}' and '{name}': both map to {quoted(str(source.place))}; correct one of them")
 
 
 def _with_made(table: Table, made: Mapping[str, Source]) -> Table:

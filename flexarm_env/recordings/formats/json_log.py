@@ -15,6 +15,7 @@ from flexarm_env import units
 from flexarm_env.errors import InputError
 from flexarm_env.recordings.columns import ColumnMap
 from flexarm_env.recordings.formats.base import Format
+from flexarm_env.recordings.formats.json_text import load_json
 from flexarm_env.recordings.messages import quoted
 from flexarm_env.recordings.table import MOST_LINES, Table
 from flexarm_env.sensors import known_sensors
@@ -47,15 +48,18 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
         if count > most:
             raise InputError(f"has {count} {what}, the limit is {most}; cut it into shorter recordings")
     try:
-        log = json.loads(content)
+        log = load_json(content)
+    except InputError:
+        raise
     except (ValueError, RecursionError) as error:
         raise InputError(f"is damaged or no JSON: {quoted(str(error))}") from None
-    sources = {} if columns is None else dict(columns.sources)
-    return Table({name: _column(log, name, str(source.place)) for name, source in sources.items()}, sources)
+    layout = columns or ColumnMap()
+    values = {name: _column(log, name, str(one.place), name in layout.conditions) for name, one in layout.sources.items()}
+    return Table(values, dict(layout.sources))
 
 
-def _column(log: Any, name: str, path: str) -> Floats:
-    """Read the numbers of one quantity; NaN where an entry has none of a signal."""
+def _column(log: Any, name: str, path: str, truth: bool) -> Floats:
+    """Read the numbers of one quantity; NaN where an entry has none of a signal, 1 and 0 for true and false where they may be."""
     if _PATH.fullmatch(path) is None:
         raise InputError(f"column '{name}': {quoted(path)} is no path; write one such as 'entries.position' or 'entries.q[0]'")
     found = _follow(log, _STEP.findall(path), name, path)
@@ -64,7 +68,7 @@ def _column(log: Any, name: str, path: str) -> Floats:
         raise InputError(f"column '{name}': {quoted(path)} is in none of {len(entries)} entries; name another")
     if len(entries) > MOST_LINES:
         raise InputError(f"has {len(entries)} entries, the limit is {MOST_LINES}; cut it into shorter recordings")
-    return np.array([_number(entry, name, path) for entry in entries], dtype=np.float64)
+    return np.array([_number(entry, name, path, truth) for entry in entries], dtype=np.float64)
 
 
 def _follow(value: Any, steps: Sequence[tuple[str, str]], name: str, path: str, in_entry: bool = False) -> Any:
@@ -91,11 +95,11 @@ def _holds(value: Any) -> str:
     return f"a list of {len(value)} elements, counted from 0" if isinstance(value, list) else quoted(json.dumps(value))
 
 
-def _number(value: Any, name: str, path: str) -> float:
-    """Convert an entry to a number: true and false to 1 and 0, a signal that is absent to NaN."""
+def _number(value: Any, name: str, path: str, truth: bool) -> float:
+    """Convert an entry to a number: a signal that is absent to NaN, and true and false of a condition to 1 and 0."""
     if value is None and name in known_sensors():
         return math.nan
-    if not isinstance(value, int | float):
+    if not isinstance(value, int | float) or (isinstance(value, bool) and not truth):
         raise InputError(f"column '{name}': {quoted(path)} leads to {_holds(value)}, not to a number")
     return units.as_float(value)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import json
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
@@ -12,6 +11,7 @@ from flexarm_env.errors import InputError
 from flexarm_env.recordings.columns import ColumnMap
 from flexarm_env.recordings.formats.base import Format
 from flexarm_env.recordings.formats.extras import library
+from flexarm_env.recordings.formats.json_text import load_json
 from flexarm_env.recordings.formats.topics import Message, read_topics, topics_of
 from flexarm_env.recordings.messages import quoted
 from flexarm_env.recordings.table import LARGEST_FILE, Table
@@ -87,7 +87,7 @@ def _unpack(compression: str, data: bytes, room: int) -> bytes:
 def _decoder(channel: Any, schema: Any) -> Callable[[bytes], Any]:
     """Find how messages of a channel are decoded."""
     if channel.message_encoding == "json":
-        return json.loads
+        return load_json
     if channel.message_encoding == "cdr" and schema is not None and schema.encoding == "ros2msg":
         return ros2_decoder(schema.name, schema.data.decode())
     form = f"{channel.message_encoding}{f' of {schema.encoding}' if schema is not None else ''}"

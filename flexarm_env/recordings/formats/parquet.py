@@ -41,15 +41,17 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
         raise InputError(f"is damaged or no Parquet file: {quoted(str(error))}") from None
     if rows > MOST_LINES:
         raise InputError(f"has {rows} rows, the limit is {MOST_LINES}; cut it into shorter recordings")
-    found = _places(names, columns or ColumnMap())
+    layout = columns or ColumnMap()
+    found = _places(names, layout)
     try:
         episodes = _whole_numbers(file, EPISODE) if EPISODE in names else np.zeros(0, np.int64)
         values = {
             name: _numbers(name, file.read([column], use_threads=False).column(0), element, source.unit, arrow.types)
             for name, (source, column, element) in found.items()
         }
-        if columns and columns.frame_rate and "time" in found and found["time"][1] == STAMP and FRAME in names:
-            values["time"] = exact_times(values["time"], _whole_numbers(file, FRAME).astype(float), columns.frame_rate)
+        _check_truth(file, {column: name for name, (_, column, _) in found.items() if name not in layout.conditions}, arrow.types)
+        if layout.frame_rate and "time" in found and found["time"][1] == STAMP and FRAME in names:
+            values["time"] = exact_times(values["time"], _whole_numbers(file, FRAME).astype(float), layout.frame_rate)
     except (arrow.ArrowException, OSError, UnicodeDecodeError) as error:
         raise InputError(f"is damaged: {quoted(str(error))}") from None
     sources = {name: source for name, (source, _, _) in found.items()}
@@ -76,6 +78,19 @@ def _places(names: list[str], layout: ColumnMap) -> dict[str, tuple[Source, str,
             raise InputError(f"column '{name}': the header has {quoted(str(place))} twice; save it with names that differ")
         found[name] = (source, str(place), element)
     return found
+
+
+def _check_truth(file: Any, names: dict[str, str], types: Any) -> None:
+    """Refuse columns of true and false, which only a condition may be.
+
+    Args:
+        file: that has them.
+        names: by the name of a column, that of its quantity.
+        types: of pyarrow.
+    """
+    for column, name in names.items():
+        if types.is_boolean(file.schema_arrow.field(column).type):
+            raise InputError(f"column '{name}': is 'bool', no numbers; name another")
 
 
 def _whole_numbers(file: Any, name: str) -> NDArray[np.int64]:
