@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from flexarm_env import units
 from flexarm_env.errors import InputError
+from flexarm_env.recordings.checks import LARGEST_READING
 from flexarm_env.recordings.resolution import repeated_readings
 from flexarm_env.sensors import known_sensors
 
@@ -60,8 +61,9 @@ class Corrections:
         if self.repeats > 1:
             absent |= repeated_readings(values, self.repeats)
         found = np.where(absent, np.nan, values)
-        if self.wrap:
-            there = np.isfinite(found)
+        there = np.isfinite(found)
+        # Readings beyond any arm's, which are refused later, would leave no digit to the others.
+        if self.wrap and np.abs(found[there]).max(initial=0.0) <= LARGEST_READING:
             found[there] = np.unwrap(found[there], period=self.wrap)
         return _moved(time, found, self.shift) if self.shift else found
 
@@ -100,6 +102,9 @@ def corrected(arrays: Mapping[str, Floats], corrections: Mapping[str, Correction
 
     Returns:
         The arrays, and notes on the readings that there are, a line each.
+
+    Raises:
+        InputError: for a shift that is longer than the recording.
     """
     found, notes = dict(arrays), []
     time = arrays["time"]
@@ -109,6 +114,8 @@ def corrected(arrays: Mapping[str, Floats], corrections: Mapping[str, Correction
             continue
         own = corrections.get(name, Corrections())
         own = replace(own, shift=own.shift + late)
+        if abs(own.shift) > time[-1]:
+            raise InputError(f"column '{name}': shift is {own.shift:g} s, but the recording lasts {time[-1]:g} s; correct it")
         found[name] = own.apply(time, arrays[name])
         absent = int(np.isnan(found[name]).sum())
         if corrections and 0 < absent < len(time):

@@ -155,7 +155,8 @@ def read_joined(path: Path, columns: ColumnMap, gains: Mapping[str, float]) -> t
             arrays = table.in_si(gains)
             first = table.first_time(gains)
             clock = first if clock is None else clock
-            time = (first - clock) + arrays.pop("time")
+            with np.errstate(over="ignore", invalid="ignore"):  # an overflow is reported where parts are joined
+                time = (first - clock) + arrays.pop("time")
             _check_conditions(table.conditions, conditions)
         except InputError as error:
             raise error if file == path else InputError(f"{file.name}: {error}") from None
@@ -186,7 +187,8 @@ def _corrected(time: Floats, arrays: Mapping[str, Floats], sources: Mapping[str,
         corrections = sources[name].corrections
         shift = corrections.shift + sources["time"].corrections.shift if name in known_sensors() else 0.0
         by_shift.setdefault(shift, {})[name] = replace(corrections, shift=0.0).apply(time, values)
-    return [Part(time - shift, columns) for shift, columns in by_shift.items()]
+    with np.errstate(over="ignore"):
+        return [Part(time - shift, columns) for shift, columns in by_shift.items()]
 
 
 def _by_file(columns: ColumnMap) -> dict[str, dict[str, Source]]:

@@ -89,7 +89,12 @@ def _check_times(part: Part) -> None:
     name = next(iter(part.columns))
     if len(part.time) < 2:
         raise InputError(f"the file of '{name}' has {len(part.time)} samples; it needs at least two")
-    back = np.flatnonzero(~(np.diff(part.time) > 0))
+    with np.errstate(over="ignore", invalid="ignore"):
+        steps = np.diff(part.time)
+    leap = np.flatnonzero(~np.isfinite(steps))
+    if leap.size:
+        raise InputError(f"the time of '{name}' leaps beyond any number after its sample {leap[0] + 1}; correct it")
+    back = np.flatnonzero(~(steps > 0))
     if back.size:
         raise InputError(
             f"the time of '{name}' does not rise after its sample {back[0] + 1}, {part.time[back[0]]:.9g} s; correct it"

@@ -59,4 +59,4 @@ class Table:
     def first_time(self, calibration: Mapping[str, float]) -> float:
         """Compute the time of the first sample on the clock of the file [s], which `in_si` counts from."""
         parts = {name: values for name, values in self.values.items() if quantity_of(name) == "time"}
-        return float(sum(values[0] * si_factor(name, self.sources[name], calibration) for name, values in parts.items()))
+        return float(sum(float(values[0]) * si_factor(name, self.sources[name], calibration) for name, values in parts.items()))

@@ -184,6 +184,60 @@ def test_topics_at_other_times(tmp_path: Path) -> None:
     assert recording.command[measured].tolist() == [2 * k - 1 for k in range(1, N)]
 
 
+def messages(path: Path, sent: list[tuple[str, dict[str, Any]]]) -> Path:
+    """Messages of JSON, each of a topic."""
+    pytest.importorskip("mcap")
+    import json
+
+    from mcap.writer import Writer
+
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        schema = writer.register_schema("State", "jsonschema", b"{}")
+        channels = {topic: writer.register_channel(topic, "json", schema) for topic in dict(sent)}
+        for k, (topic, content) in enumerate(sent):
+            writer.add_message(channels[topic], log_time=k, data=json.dumps(content).encode(), publish_time=k)
+        writer.finish()
+    return path
+
+
+TOPICS = {
+    "time": {"variable": "t", "unit": "s"},
+    "current": {"variable": "/motor.i", "unit": "A"},
+    "arm_angle": {"variable": "/state.q", "unit": "rad"},
+}
+
+
+def test_held_readings_are_those_of_the_messages_of_their_topic(tmp_path: Path) -> None:
+    """Beside the commands between them, no row repeats the one before it."""
+    sent = [("/motor", {"t": 0.01 * k - 0.002, "i": k}) for k in range(13)]
+    sent += [("/state", {"t": 0.01 * k, "q": 1.0 + k // 3}) for k in range(12)]
+    path = messages(tmp_path / "run.mcap", sent)
+    found = [Recording.read(path, TOPICS | {"arm_angle": TOPICS["arm_angle"] | how}) for how in ({}, {"repeats": 3})]
+    measured = [run.signals["arm_angle"][~np.isnan(run.signals["arm_angle"])] for run in found]
+    assert [len(found[0]), len(measured[0])] == [25, 12]
+    assert measured[1].tolist() == [1.0, 2.0, 3.0, 4.0]
+    assert found[1].time[~np.isnan(found[1].signals["arm_angle"])] == pytest.approx(0.002 + 0.03 * np.arange(4))
+
+
+@pytest.mark.parametrize(
+    ("times", "words"),
+    [
+        ([{"sec": 0, "nanosec": 5}, 0.1], "'t' is a stamp with nanoseconds in some messages and a number in others; name a time"),
+        ([0.0, float("inf")], "message 2 of topic '/state', column 'time': is no time; correct it"),
+        ([0.0, 10**400], "message 2 of topic '/state', column 'time': is no time; correct it"),
+        ([float("nan"), 1.0], "message 1 of topic '/state', column 'time': is no time; correct it"),
+        ([{"sec": 10**400, "nanosec": 5}, {"sec": 0, "nanosec": 5}], "message 1 of topic '/state', column 'time': is no time"),
+    ],
+)
+def test_times_of_messages_that_are_none_are_refused(tmp_path: Path, times: list[Any], words: str) -> None:
+    kind = {"sec": 0, "nanosec": 0} if isinstance(times[-1], dict) else 0.0
+    sent = [("/motor", {"t": kind, "i": 0}), ("/motor", {"t": kind if kind else 1.0, "i": 0})]
+    sent += [("/state", {"t": time, "q": 0.0}) for time in times]
+    assert words in refusal(messages(tmp_path / "run.mcap", sent), columns=TOPICS)
+
+
 @pytest.mark.parametrize(
     ("entry", "words"),
     [

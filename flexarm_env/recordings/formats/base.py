@@ -89,7 +89,10 @@ class Format:
                 raise InputError(f"condition '{name}' comes twice, in [columns] and in the file's remarks; keep one of the two")
             numbers = as_vector(name, table.values[name])
             known = numbers[~np.isnan(numbers)]  # not of the rows of other topics
-            place, differ = quoted(str(source.place)), len(known) and bool((known != known[0]).any())
+            place = quoted(str(source.place))
+            if not np.isfinite(known).all():
+                raise InputError(f"condition '{name}': {place} has {known[~np.isfinite(known)][0]}; correct it")
+            differ = len(known) and bool((known != known[0]).any())
             if not len(known) or (differ and not (source.mean or source.split)):
                 raise InputError(
                     f"condition '{name}': {place} is not one number throughout; write split = true for a recording of each of "
@@ -103,7 +106,8 @@ class Format:
                     )
                 changing[name] = [base_value(number, source) for number in held(numbers).tolist()]
                 continue
-            number = float(np.mean(known)) if differ else float(known[0])
+            with np.errstate(over="ignore"):  # an overflow is reported as a condition that is not finite
+                number = float(np.mean(known)) if differ else float(known[0])
             if differ:
                 spread = f"{known.min():.4g} to {known.max():.4g}"
                 notes.append(f"condition '{name}' is the mean of {place}, {number:.4g} {source.unit} of {spread}")
@@ -130,6 +134,7 @@ def _with_made(table: Table, made: Mapping[str, Source]) -> Table:
             what = "a column of time, but [columns] gives a rate" if name == "time" else f"a column '{name}' beside its value"
             raise InputError(f"has {what}; leave the {source.key} out")
         number = float(source.place)
-        column = np.arange(count) / number if source.key == "rate" else np.full(count, number)
+        with np.errstate(over="ignore", invalid="ignore"):  # an overflow is reported with its row
+            column = np.arange(count) / number if source.key == "rate" else np.full(count, number)
         values, sources = {name: column} | values, {name: source} | sources
     return replace(table, values=values, sources=sources)

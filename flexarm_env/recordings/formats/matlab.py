@@ -76,11 +76,13 @@ def _slice(numbers: Floats, axis: int, index: int, where: str) -> Floats:
 def _even_time(step: float, source: Source, count: int) -> tuple[Floats, Source]:
     """Make times of a single number: the time between samples, or the rate if its unit is one of frequency."""
     if source.unit and units.converts(source.unit, "Hz"):
-        step = 1.0 / (step * units.factor(source.unit, "Hz", source.scale)) if step else 0.0
+        rate = step * units.factor(source.unit, "Hz", source.scale)
+        step = 1.0 / rate if rate else 0.0
         source = replace(source, unit="s", scale=1.0)
     if not (np.isfinite(step) and step > 0):
         raise InputError(f"column 'time': {quoted(str(source.place))} is one number, {step}; it must be the time between samples")
-    return step * np.arange(count, dtype=np.float64), source
+    with np.errstate(over="ignore"):  # an overflow is reported with its row
+        return step * np.arange(count, dtype=np.float64), source
 
 
 FORMAT = Format("MATLAB file", (".mat",), ("variable",), read, matrices=True)

@@ -6,6 +6,8 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from flexarm_env import units
 from flexarm_env.errors import InputError
 from flexarm_env.recordings.cells import MOST_CELLS, count_cells, cut, is_blank, is_number, read_numbers, usual_width
@@ -73,7 +75,8 @@ def read_rows(rows: list[str], places: Sequence[int], header: list[str], body: i
     values = {name: table[:, i] for i, name in enumerate(numbers.values())}
     if stamped is not None:
         times = read_stamps(rows, places, stamped, layout.delimiter)
-        values["time"] = times / units.factor(sources["time"].unit, "s", sources["time"].scale)
+        with np.errstate(over="ignore"):  # an overflow is reported with its row
+            values["time"] = times / units.factor(sources["time"].unit, "s", sources["time"].scale)
     return Table(values, sources, lines=[row + 1 for row in places])
 
 

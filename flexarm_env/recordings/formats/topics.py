@@ -3,23 +3,29 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexarm_env import units
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.recordings.columns import ColumnMap, Source, quantity_of
 from flexarm_env.recordings.joining import Part, join
 from flexarm_env.recordings.messages import quoted
+from flexarm_env.recordings.resolution import repeated_readings
 from flexarm_env.recordings.table import MOST_LINES, Table
+
+Floats = NDArray[np.float64]
 
 # Possessive, so that no path takes time that grows faster than its length.
 _PATH = re.compile(r"(/[\w/~-]++)?((?:\.?+\w++|\[[^\[\]]++\])*+)")
 _STEP = re.compile(r"\.?(\w+)|\[([^\[\]]+)\]")
 LOG_TIME = "log_time"
+#: Largest time in a message: nanoseconds of a thousand years.
+_LATEST = 3e19
 
 
 @dataclass(frozen=True)
@@ -93,17 +99,41 @@ def _table(
     empty = next((topic for topic in groups if len(rows[topic]) < 2), None)
     if empty is not None:
         raise InputError(f"topic {quoted(empty)} has {len(rows[empty])} messages; it needs at least two")
+    _check_times(times, str(columns.sources["time"].place))
     whole = all(isinstance(instants[0], int) for instants in times.values())
     factor = 1e-9 / units.factor(columns.sources["time"].unit, "s") if whole else 1.0
     first = min(instants[0] for instants in times.values())
     parts = [
         Part(
             np.array([instant - first for instant in times[topic]], dtype=np.float64) * factor,
-            dict(zip(groups[topic], np.array(rows[topic], dtype=np.float64).T, strict=True)),
+            {
+                name: _without_repeats(columns.sources[name], values)
+                for name, values in zip(groups[topic], np.array(rows[topic], dtype=np.float64).T, strict=True)
+            },
         )
         for topic in groups
     ]
-    return Table(join(parts), dict(columns.sources))
+    done = {name: replace(one, corrections=replace(one.corrections, repeats=1)) for name, one in columns.sources.items()}
+    return Table(join(parts), done)
+
+
+def _check_times(times: Mapping[str, list[int | float]], path: str) -> None:
+    """Refuse times of two kinds, whose zeros differ, and times that are none."""
+    if len({isinstance(instant, int) for instants in times.values() for instant in instants}) > 1:
+        raise InputError(
+            f"column 'time': {quoted(path)} is a stamp with nanoseconds in some messages and a number in others; "
+            f"name a time that all have, such as '{LOG_TIME}'"
+        )
+    for topic, instants in times.items():
+        bad = next((number for number, instant in enumerate(instants) if not abs(instant) <= _LATEST), None)
+        if bad is not None:
+            raise InputError(f"message {bad + 1} of topic {quoted(topic)}, column 'time': is no time; correct it")
+
+
+def _without_repeats(source: Source, values: Floats) -> Floats:
+    """Leave out the readings that are only held, of the messages of one topic: beside those of others no row follows another."""
+    repeats = source.corrections.repeats
+    return np.where(repeated_readings(values, repeats), np.nan, values) if repeats > 1 else values
 
 
 def _cut(name: str, source: Source) -> tuple[str, str]:
