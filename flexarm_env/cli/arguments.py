@@ -116,9 +116,11 @@ def load_arm(name: str, specs: Sequence[str] | None) -> Arm:
 
 def show_notes(recordings: Sequence[Recording]) -> None:
     """Print on stderr how files were read, where a person might expect otherwise."""
+    from flexarm_env.errors import printable
+
     for recording in recordings:
         for note in recording.notes:
-            typer.echo(f"Note: {recording.source or recording.name}: {note}", err=True)
+            typer.echo(printable(f"Note: {recording.source or recording.name}: {note}"), err=True)
 
 
 def show_faults(faults: Sequence[str]) -> None:

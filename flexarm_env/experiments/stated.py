@@ -42,9 +42,12 @@ def stated_by(arm: Arm, recording: Recording) -> Stated:
 def check_stated(arm: Arm, recording: Recording) -> None:
     """Refuse a payload that the arm has no tip to carry, and a value out of bounds or with which there is no such arm.
 
+    A condition that the arm takes up must be readable where it is stated.
+
     Raises:
         InputError: for such a condition, or one in a unit of another quantity.
     """
+    _check_read(arm, recording)
     _check_units(arm, recording)
     stated = dict(stated_by(arm, recording))
     payload = stated.pop(PAYLOAD, 0.0)
@@ -62,6 +65,15 @@ def check_stated(arm: Arm, recording: Recording) -> None:
             f"{recording.name} states a payload of {payload:g} kg, but arm '{arm.name}' has no tip to carry it; "
             "add [beam], or a length to [link], or put the load into hub.inertia and take the line '# payload' out"
         )
+
+
+def _check_read(arm: Arm, recording: Recording) -> None:
+    """Refuse a condition that sets a constant or a gain and that is stated, but cannot be read."""
+    law = recording.controller or arm.controller
+    wanted = {*arm.conditions, *(law.conditions if law is not None else ())}
+    for name, note in recording.unread.items():
+        if name in wanted and name not in recording.conditions:
+            raise InputError(f"{recording.source}: {note}; arm '{arm.name}' takes up '{name}', so correct the line")
 
 
 def _check_units(arm: Arm, recording: Recording) -> None:

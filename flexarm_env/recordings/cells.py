@@ -178,7 +178,7 @@ def _row_by_row(
                 cells[index] = _TRUTH.get(cells[index].strip().lower(), cells[index])
             absent = _may_be_absent(name) and _is_absent(cells[index])
             if not absent and not is_number(cells[index], layout.decimal):
-                raise InputError(f"{where}, column '{name}': {_not_a_number(cells[index])}")
+                raise InputError(f"{where}, column '{name}': {_not_a_number(cells[index], _may_be_absent(name))}")
         yield [math.nan if _is_absent(cell) else float(_point(cell, layout.decimal)) for cell in map(cells.__getitem__, labels)]
 
 
@@ -192,7 +192,7 @@ def _width_hint(row: str, found: int, expected: int, delimiter: str) -> str:
     return f"are two rows run together, or does the header lack a name? {stands}.{commas}"
 
 
-def _not_a_number(cell: str) -> str:
+def _not_a_number(cell: str, may_be_absent: bool) -> str:
     if not cell.strip():
         return "is empty; a replay needs time and reference in every row; only signals and later commands may be absent"
     if _COMMA_AND_THREE.fullmatch(cell):
@@ -204,4 +204,5 @@ def _not_a_number(cell: str) -> str:
         return f"{quoted(cell)} has a decimal comma; say decimal = ',' in [columns], or export with decimal points"
     if _DATE.match(cell):
         return f"{quoted(cell)} is a date whose day and month may be read two ways; export it as 2024-05-31 10:00:00.5"
-    return f"{quoted(cell)} is not a number; correct it"
+    empty = ", or leave the cell empty if nothing was measured" if may_be_absent else ""
+    return f"{quoted(cell)} is not a number; correct it{empty}"

@@ -21,7 +21,7 @@ _OF_A_DATE = re.compile(r"[-:./]\d")
 _LONGEST_UNIT = 10
 
 
-def add_condition(line: str, conditions: dict[str, float]) -> str:
+def add_condition(line: str, conditions: dict[str, float]) -> dict[str, str]:
     """Add the condition that a line such as `# payload = 0.3 kg` or `# payload [kg]: 0.3` states. Other remarks are skipped.
 
     A unit stands in brackets or parentheses before the number, 1 for none. Empty cells at the end are a spreadsheet's padding.
@@ -31,7 +31,7 @@ def add_condition(line: str, conditions: dict[str, float]) -> str:
         conditions: in SI by name; added to.
 
     Returns:
-        A note on a line that may be meant as a condition and is none, else "".
+        By its name, a note on a condition that may be meant and cannot be read; nothing for other lines.
 
     Raises:
         InputError: for a condition that comes twice, is misspelt, has no right unit, or is written as a remark.
@@ -40,7 +40,7 @@ def add_condition(line: str, conditions: dict[str, float]) -> str:
     match = _CONDITION.fullmatch(text)
     if match is None or (match[4] == ":" and match[1] not in CONDITIONS):
         _check_remark(text)
-        return ""
+        return {}
     name, unit = match[1], (match[2] or match[3] or "").strip()
     value = match[5] if unit in ("", "1") else f"{match[5]} {unit}"
     if name in conditions:
@@ -52,10 +52,10 @@ def add_condition(line: str, conditions: dict[str, float]) -> str:
         try:
             conditions[name] = units.base_value(value)
         except InputError as error:  # "# trial = 3 good" is a remark
-            return f"{quoted(text)} is read as a remark: {error}"
+            return {name: f"{quoted(text)} is read as a remark: {error}"}
     elif fault := _fault(value.strip("\"'")):
-        return f"{quoted(text)} is read as a remark: {fault}"
-    return ""
+        return {name: f"{quoted(text)} is read as a remark: {fault}"}
+    return {}
 
 
 def _fault(value: str) -> str:

@@ -143,6 +143,7 @@ def read_joined(path: Path, columns: ColumnMap, gains: Mapping[str, float]) -> t
     """
     parts: list[Part] = []
     conditions: dict[str, float] = {}
+    unread: dict[str, str] = {}
     notes: list[str] = []
     checksum = hashlib.sha256()
     clock: float | None = None
@@ -162,10 +163,11 @@ def read_joined(path: Path, columns: ColumnMap, gains: Mapping[str, float]) -> t
             raise error if file == path else InputError(f"{file.name}: {error}") from None
         checksum.update(content)
         conditions |= table.conditions
+        unread |= table.unread
         notes += table.notes
         parts += _corrected(time, arrays, sources)
     plain = {quantity: Source(quantity, UNITS[quantity]) for quantity in map(quantity_of, columns.sources)}
-    return Table(join(parts), plain, conditions, notes=tuple(notes)), checksum.hexdigest()
+    return Table(join(parts), plain, conditions, unread=unread, notes=tuple(notes)), checksum.hexdigest()
 
 
 def _check_conditions(found: Mapping[str, float], others: Mapping[str, float]) -> None:

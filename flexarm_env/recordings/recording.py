@@ -60,6 +60,7 @@ class Recording(Shown):
         source: the path it was read from; "" if from none.
         sha256: of that file's content; "" if from none.
         notes: one line each on how the recording was read or made, where a person might expect otherwise.
+        unread: notes on conditions that its file states and that cannot be read, by name.
         gaps: for each step over three median steps, the index of the sample before it and its length [s].
     """
 
@@ -74,6 +75,7 @@ class Recording(Shown):
     source: str = ""
     sha256: str = ""
     notes: tuple[str, ...] = ()
+    unread: dict[str, str] = field(default_factory=dict)
     gaps: list[tuple[int, float]] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -227,7 +229,7 @@ class Recording(Shown):
             if layout is not None and layout.joins:
                 table, checksum = read_joined(path, layout, gains)
                 name = recording_name(path, layout)
-                recordings = [_with_notes(_recording(name, table.values, table.conditions, (), table.sources), table.notes)]
+                recordings = [_with_notes(_recording(name, table.values, table.conditions, (), table.sources), table)]
             else:
                 content = read_bytes(path)
                 layout = None if layout is None else with_info(path, layout)
@@ -370,12 +372,12 @@ def _recording(
 def _stretches(name: str, table: Table, gains: Mapping[str, float]) -> list[Recording]:
     """Make the recordings of a table: one, or one of each stretch between changes of its conditions."""
     whole = _recording(name, table.in_si(gains), table.conditions, table.lines, table.sources)
-    return stretches_of(_with_notes(whole, table.notes), table.changing)
+    return stretches_of(_with_notes(whole, table), table.changing)
 
 
-def _with_notes(recording: Recording, notes: Sequence[str]) -> Recording:
-    """Add notes on the reading of a file."""
-    return replace(recording, notes=(*notes, *recording.notes))
+def _with_notes(recording: Recording, table: Table) -> Recording:
+    """Add the notes on the reading of a table."""
+    return replace(recording, notes=(*table.notes, *recording.notes), unread=table.unread)
 
 
 def _with_sidecars(recording: Recording, path: Path, columns: ColumnMap | None) -> Recording:

@@ -27,6 +27,7 @@ class Table:
         lines: for each sample its line in the file, counted from 1; empty where a format has no lines.
         episodes: for each sample the number of the recording that it is of; empty where a file is one recording.
         changing: conditions that change during the run, n numbers each, in SI.
+        unread: notes on conditions that remarks state and that cannot be read, by name.
         notes: a line each on what may be meant otherwise than it was read.
     """
 
@@ -36,6 +37,7 @@ class Table:
     lines: Sequence[int] = ()
     episodes: Sequence[int] = ()
     changing: dict[str, Sequence[float]] = field(default_factory=dict)
+    unread: dict[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
     def in_si(self, calibration: Mapping[str, float]) -> dict[str, NDArray[np.float64]]:

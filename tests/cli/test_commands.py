@@ -176,3 +176,13 @@ def test_bench_says_where_it_is(flexarm, monkeypatch):
 
     monkeypatch.setattr(benchmarks, "__file__", "/nowhere/flexarm_env/cli/benchmarks.py")
     assert "source tree" in flexarm.refused("bench")
+
+
+def test_a_note_stays_one_line_whatever_the_path(flexarm, identify, tmp_path):
+    folder = tmp_path / "one\ntwo"
+    folder.mkdir()
+    (folder / "run.csv").write_text(HEADER + ROWS)
+    (folder / "run.toml").write_text("[conditions]\nkp = 3\n")
+    assert flexarm("compare", folder / "run.csv") == 0
+    (note,) = (line for line in flexarm.err.splitlines() if "run.toml" in line)
+    assert note == rf"Note: {tmp_path}/one\ntwo/run.csv: run.toml states kp = 3"

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from flexarm_env import Arm, Recording, compare, fit, simulate
+from flexarm_env.control.law import ControlLaw, Feedback
 from flexarm_env.errors import InputError
 from flexarm_env.experiments.stated import check_stated, stated_by, with_stated
 from flexarm_env.identify.calibrate.parameters import free_parameters
@@ -152,3 +153,22 @@ def test_a_condition_in_another_unit_of_the_same_quantity_is_taken(tmp_path, whe
 
 def test_a_condition_without_a_unit_is_in_that_of_its_constant(tmp_path):
     check_stated(rigid(), read_stating(tmp_path, "0.3", "remark"))
+
+
+def test_a_condition_that_the_arm_takes_up_and_that_cannot_be_read_is_refused(tmp_path):
+    """Another is a note alone, and one that a file beside the recording states is known."""
+    run = read_stating(tmp_path, "0,3", "remark")
+    with pytest.raises(InputError) as refusal:
+        check_stated(rigid(), run)
+    note = f"{tmp_path / 'run.csv'}: row 1: 'load = 0,3' is read as a remark: it has a decimal comma; write a point"
+    assert str(refusal.value) == f"{note}; arm 'cu-rigid' takes up 'load', so correct the line"
+    check_stated(replace(rigid(), conditions={}), run)
+    (tmp_path / "run.toml").write_text("[conditions]\nload = '0.3 kg*m^2'\n")
+    check_stated(rigid(), Recording.read(tmp_path / "run.csv"))
+
+
+def test_so_is_one_that_a_control_law_names(tmp_path):
+    law = ControlLaw((Feedback("arm_angle", ("load",)),))
+    run = read_stating(tmp_path, "0,3", "remark")
+    with pytest.raises(InputError, match="takes up 'load', so correct the line"):
+        check_stated(replace(rigid(), conditions={}), replace(run, controller=law))

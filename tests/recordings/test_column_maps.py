@@ -13,6 +13,8 @@ from flexarm_env.errors import InputError
 from flexarm_env.recordings.column_maps import load_columns
 from flexarm_env.recordings.recording import Recording
 
+NAMES = ("time", "voltage", "arm_angle")
+
 
 def test_columns_from_toml(tmp_path: Path) -> None:
     table = save(
@@ -55,6 +57,20 @@ def test_semicolons_decimal_commas_and_signs(tmp_path: Path) -> None:
     assert recording.time.tolist() == [0, 0.001]
     assert recording.command.tolist() == pytest.approx([1.5, -0.025])
     assert recording.signals["arm_angle"][0] == pytest.approx(-np.pi / 2)
+
+
+def test_a_header_that_numpy_writes(tmp_path: Path) -> None:
+    path = tmp_path / "run.txt"
+    values = np.column_stack([0.1 * np.arange(4), np.ones(4), np.arange(4)])
+    np.savetxt(path, values, header="payload = 0.3 kg\nt u q")
+    columns = {name: {"column": place, "unit": unit} for name, place, unit in zip(NAMES, "tuq", ("s", "V", "rad"), strict=True)}
+    for mark in ("#", "# "):
+        run = Recording.read(path, {"delimiter": " ", "header_prefix": mark, **columns})
+        assert run.signals["arm_angle"].tolist() == [0, 1, 2, 3]
+        assert run.conditions == {"payload": 0.3}
+    assert "row 2, column 'time': no 't'" in refusal(
+        save(tmp_path, "# note\n# x u q\n0 1 2\n1 1 2\n"), columns={"delimiter": " ", "header_prefix": "#", **columns}
+    )
 
 
 def test_a_thousands_mark_is_not_taken_for_a_point(tmp_path: Path) -> None:

@@ -114,6 +114,7 @@ def test_a_row_of_tabs_is_empty_cells_where_tabs_part_them(tmp_path: Path) -> No
             "row 3: has 1 cells where 3 are expected; a remark stands before",
         ),
         (GOOD.replace("0.1,2,0.6\n", "0.1,2,0.60.2"), "row 3: has 5 cells"),
+        (GOOD.replace("0.6", "N/A"), "'N/A' is not a number; correct it, or leave the cell empty if nothing was measured"),
         (GOOD.replace("0.6", '"2,000"'), "'2,000' has a comma, which may mark thousands or decimals; export"),
         (GOOD.replace("0.6", '"-1,234,567"'), "'-1,234,567' has a comma, which may"),
         (GOOD.replace("0.6", '"0,600"'), "'0,600' has a decimal comma; say decimal = ','"),

@@ -35,14 +35,14 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
     """
     lines = text_lines(content)
     layout, skip = _excel(lines, columns or ColumnMap())
-    first, conditions, notes = _preamble(lines, skip)
+    first, conditions, unread = _preamble(lines, skip, layout.header_prefix)
     header, body = _header(lines, first, layout)
     body += bool(header) and body < len(lines) and states_units(lines[body], header, body, layout)
     rows = [row for row in range(body, len(lines)) if not is_blank(lines[row], layout.delimiter)]
     while rows and _is_remark(lines[rows[-1]], lines[rows[0]], layout):
-        notes += _add_remark(lines, rows.pop(), conditions)
+        unread |= _add_remark(lines, rows.pop(), conditions)
     table = read_rows([lines[row] for row in rows], rows, header, body, layout)
-    return replace(table, conditions=conditions, notes=tuple(notes))
+    return replace(table, conditions=conditions, unread=unread, notes=tuple(unread.values()))
 
 
 def read_rows(rows: list[str], places: Sequence[int], header: list[str], body: int, layout: ColumnMap) -> Table:
@@ -89,7 +89,7 @@ def read_header(head: bytes) -> list[str]:
     whole, _, _ = head.replace(b"\r", b"\n").rpartition(b"\n")  # the last line may be cut off, within a character, too
     lines = _decode(whole or head).split("\n")
     layout, skip = _excel(lines, ColumnMap())
-    first, _, _ = _preamble(lines, skip)
+    first, _, _ = _preamble(lines, skip, layout.header_prefix)
     return _header(lines, first, layout)[0]
 
 
@@ -133,23 +133,29 @@ def _excel(lines: Sequence[str], layout: ColumnMap) -> tuple[ColumnMap, int]:
     return found, skip
 
 
-def _preamble(lines: Sequence[str], skip: int) -> tuple[int, dict[str, float], list[str]]:
-    """Count the lines before the header, and read the conditions that they state, with notes on them."""
+def _preamble(lines: Sequence[str], skip: int, mark: str) -> tuple[int, dict[str, float], dict[str, str]]:
+    """Count the lines before the header, and read the conditions that they state, with notes on those that cannot be read.
+
+    A mark of headers may be that of remarks, as numpy writes it: then the last of those lines is the header.
+    """
     conditions: dict[str, float] = {}
-    notes: list[str] = []
-    for row in range(skip, len(lines)):
-        line = lines[row].strip()
-        if not line.startswith("#") and not is_blank(lines[row]):
-            return row, conditions, notes
-        notes += _add_remark(lines, row, conditions)
-    raise InputError("has no header row; write one such as 'time [s],current [A],arm_angle [rad]'")
+    unread: dict[str, str] = {}
+    first = skip
+    while first < len(lines) and (is_blank(lines[first]) or lines[first].lstrip().startswith("#")):
+        first += 1
+    marked = [row for row in range(skip, first) if lines[row].startswith(mark)] if mark.startswith("#") else []
+    header = marked[-1] if marked else first
+    if header == len(lines):
+        raise InputError("has no header row; write one such as 'time [s],current [A],arm_angle [rad]'")
+    for row in range(skip, header):
+        unread |= _add_remark(lines, row, conditions)
+    return header, conditions, unread
 
 
-def _add_remark(lines: Sequence[str], row: int, conditions: dict[str, float]) -> list[str]:
-    """Add the condition that a remark states; return notes on it."""
+def _add_remark(lines: Sequence[str], row: int, conditions: dict[str, float]) -> dict[str, str]:
+    """Add the condition that a remark states; return a note on one that cannot be read, by its name."""
     try:
-        note = add_condition(lines[row].strip(), conditions)
-        return [f"row {row + 1}: {note}"] if note else []
+        return {name: f"row {row + 1}: {note}" for name, note in add_condition(lines[row].strip(), conditions).items()}
     except InputError as error:
         raise InputError(f"row {row + 1}: {error}") from None
 
