@@ -279,6 +279,16 @@ def test_a_struct_that_holds_a_function_and_text_is_read(tmp_path: Path) -> None
     assert "is function" in refusal(path, columns=entries("d.time", "d.u", "d.label"))
 
 
+def test_true_and_false_are_those_of_a_condition(tmp_path: Path) -> None:
+    path = save(tmp_path, written(t=TIME, u=VOLTS, on=np.ones(len(TIME), bool), s={"on": np.ones(len(TIME), bool)}), "run.mat")
+    for place in ("on", "on(:)", "s.on"):
+        message = refusal(path, columns=entries("t", "u", place))
+        assert message.startswith("column 'arm_angle': ")
+        assert "is true and false, no numbers; name another" in message
+    table = entries("t", "u", "t") | {"arm_angle": {"variable": "t(:)", "unit": "rad"}}
+    assert Recording.read(path, table | {"conditions": {"on": {"variable": "on", "unit": "1"}}}).conditions == {"on": 1.0}
+
+
 def test_a_bomb_is_refused(tmp_path: Path) -> None:
     path = save(tmp_path, written(True, t=TIME, u=VOLTS, zeros=np.zeros(40_000_000)), "run.mat")
     assert path.stat().st_size < 10_000_000

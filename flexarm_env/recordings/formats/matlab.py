@@ -33,7 +33,8 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
     sources = {} if columns is None else dict(columns.sources)
     try:
         found = variables(content)
-        values = {name: _column(name, source, found) for name, source in sources.items()}
+        conditions = {} if columns is None else columns.conditions
+        values = {name: _column(name, source, found, name in conditions) for name, source in sources.items()}
     except VersionError as error:
         raise InputError(f"is {error}, which is not read; save('FILE.mat', '-v7')") from None
     except DamagedError:
@@ -41,17 +42,17 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
     longest = max(map(len, values.values()), default=0)
     if "time" in values and len(values["time"]) == 1 < longest:
         values["time"], sources["time"] = _even_time(float(values["time"][0]), sources["time"], longest)
-    lengths = {name: len(value) for name, value in values.items() if columns is None or name not in columns.conditions}
+    lengths = {name: len(value) for name, value in values.items() if name not in conditions}
     if len(set(lengths.values())) > 1:
         raise InputError(f"its variables differ in length ({lengths}); give vectors of one length")
     return Table(values, sources)
 
 
-def _column(name: str, source: Source, found: Mapping[str, Variable]) -> Floats:
-    """Read the vector of one quantity."""
+def _column(name: str, source: Source, found: Mapping[str, Variable], truth: bool) -> Floats:
+    """Read the vector of one quantity, of true and false where it may be."""
     path = str(source.place)
     try:
-        numbers = find_numbers(found, path)
+        numbers = find_numbers(found, path, truth)
     except InputError as error:
         raise InputError(f"column '{name}': {error}") from None
     if numbers.ndim > 2 and 1 in numbers.shape:  # Simulink gives a signal of several columns as m × 1 × n

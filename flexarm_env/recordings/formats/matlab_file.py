@@ -24,7 +24,7 @@ _TYPE_CODES = {*_NUMBER_TYPES, _MATRIX, _COMPRESSED, 16, 17, 18}
 _CELL, _STRUCT, _OBJECT, _TEXT, _SPARSE, _FUNCTION, _OPAQUE = 1, 2, 3, 4, 5, 16, 17
 _KINDS = {_CELL: "cell", _STRUCT: "struct", _OBJECT: "object", _TEXT: "text", _SPARSE: "sparse matrix", _FUNCTION: "function"}
 _KINDS |= dict.fromkeys(range(6, 16), "numbers")
-_COMPLEX = 0x800
+_COMPLEX, _LOGICAL = 0x800, 0x200
 _HEADER = 128
 # Version 4: a header of five integers, whose first is MOPT, with the floats' machine in its thousands.
 _V4_HEADER = 20
@@ -50,12 +50,14 @@ class Variable:
         shape: its dimensions; () for an object.
         order: "<" or ">".
         parts: type code and content of what follows the header.
+        truth: whether its numbers are true and false.
     """
 
     kind: str
     shape: tuple[int, ...]
     order: str
     parts: tuple[tuple[int, memoryview], ...]
+    truth: bool = False
 
     @property
     def size(self) -> int:
@@ -181,7 +183,7 @@ def _variable(data: memoryview, order: str) -> tuple[str, Variable]:
     if min(shape) < 0 or (kind == "numbers" and len(parts) != (5 if flags & _COMPLEX else 4)):
         raise DamagedError("an array without its data")
     kind = "complex numbers" if kind == "numbers" and flags & _COMPLEX else kind
-    variable = Variable(kind, shape, order, tuple(parts[3:]))
+    variable = Variable(kind, shape, order, tuple(parts[3:]), bool(flags & _LOGICAL))
     if kind == "numbers" and math.prod(shape):
         code, data = parts[3]
         if code not in _NUMBER_TYPES or len(data) != variable.size * np.dtype(_NUMBER_TYPES[code]).itemsize:

@@ -18,8 +18,13 @@ _NAME = re.compile(r"[A-Za-z]\w*+")
 _MOST_SHOWN, _MOST_FIELDS = 8, 6
 
 
-def find_numbers(variables: Mapping[str, Variable], path: str) -> NDArray[np.float64]:
+def find_numbers(variables: Mapping[str, Variable], path: str, truth: bool = True) -> NDArray[np.float64]:
     """Find the numbers at a path, in their shape.
+
+    Args:
+        variables: of the file.
+        path: as MATLAB writes it.
+        truth: whether true and false are numbers, too.
 
     Raises:
         InputError: for a path that is none, that leads nowhere, or to anything but real numbers.
@@ -38,6 +43,8 @@ def find_numbers(variables: Mapping[str, Variable], path: str) -> NDArray[np.flo
             value = _field(value, step[1], at)
         else:
             value = _element(value, step, at)
+    if value.truth and not truth:
+        raise InputError(f"{quoted(place)} is true and false, no numbers; name another")
     if numbers is None:
         if value.kind != "numbers":
             raise InputError(f"{quoted(place)} is {describe(value)}, not a vector of real numbers{_advice(value, place)}")
