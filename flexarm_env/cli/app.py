@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from flexarm_env.cli import arguments
-from flexarm_env.cli.options import ArmName, Columns, Effects, Json, Rate, Recordings, RecordingsOrNone, Report, Save, Seed
+from flexarm_env.cli.options import ArmName, Columns, Effects, Json, Rate, Recordings, RecordingsOrNone, Report, Save, Seed, place
 
 app = typer.Typer(
     add_completion=False,
@@ -102,7 +102,8 @@ def diagnose(
     report: Report = None,
     save: Save = None,
     next_run: Annotated[
-        Path | None, typer.Option(metavar="FILE.csv", help="Write the input to record next, where something stays open.")
+        Path | None,
+        typer.Option(parser=place, metavar="FILE.csv", help="Write the input to record next, where something stays open."),
     ] = None,
     seed: Seed = 0,
     jobs: Annotated[int, typer.Option(min=1, max=256, help="Processes to use.")] = 2,
@@ -203,7 +204,7 @@ def fit(
 
 @app.command()
 def simulate(
-    save: Annotated[Path, typer.Option(metavar="FILE.csv", help="Write the recording.", show_default=False)],
+    save: Annotated[Path, typer.Option(parser=place, metavar="FILE.csv", help="Write the recording.", show_default=False)],
     arm: ArmName = "thesis",
     input: Annotated[
         str, typer.Option(metavar="INPUT", help="pulse, square, sweep, or a file of commands to play: time and input.")
@@ -247,11 +248,12 @@ def tune(
     start: Annotated[
         Path | None, typer.Option(metavar="FILE.toml", help="A tuned controller to start from, such as one for the nominal arm.")
     ] = None,
-    save: Annotated[Path | None, typer.Option(metavar="FILE.toml", help="Write the tuned controller.")] = None,
+    save: Annotated[Path | None, typer.Option(parser=place, metavar="FILE.toml", help="Write the tuned controller.")] = None,
     trials: Annotated[int, typer.Option(min=1, help="Values to try.")] = 120,
     arms: Annotated[int, typer.Option(min=1, max=1000, help="Arms in each cell of a trial.")] = 12,
     journal: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Keep the trials there: after a stop the same command goes on.")
+        Path | None,
+        typer.Option(parser=place, metavar="FILE", help="Keep the trials there: after a stop the same command goes on."),
     ] = None,
     seed: Seed = 0,
     json: Json = None,

@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from flexarm_env.arm_file import shipped_arms
+from flexarm_env.errors import InputError
+
+
+def place(text: str) -> Path:
+    """Make the path of a file that is written; a Path would drop the slash that says a folder.
+
+    Raises:
+        InputError: for a folder.
+    """
+    if text.endswith(("/", os.sep)):
+        raise InputError(f"cannot write {text}: it is a folder; name a file in it")
+    return Path(text)
+
 
 _RECORDINGS = typer.Argument(metavar="RECORDING…", help="Recordings (.csv, .mat, …), or folders of them.", show_default=False)
 Recordings = Annotated[list[Path], _RECORDINGS]
@@ -22,9 +36,11 @@ Effects = Annotated[
     list[str] | None,
     typer.Option(metavar="FILE.py:Name", help="An effect of your own, besides the catalogue; may be repeated. Runs FILE.py."),
 ]
-Json = Annotated[Path | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for stdout.")]
-Report = Annotated[Path | None, typer.Option(metavar="FILE.html", help="Write a page with figures.")]
-Save = Annotated[Path | None, typer.Option(metavar="ARM.toml", help="Write the arm that results.")]
+Json = Annotated[
+    Path | None, typer.Option("--json", parser=place, metavar="FILE", help="Write the result as JSON; - for stdout.")
+]
+Report = Annotated[Path | None, typer.Option(parser=place, metavar="FILE.html", help="Write a page with figures.")]
+Save = Annotated[Path | None, typer.Option(parser=place, metavar="ARM.toml", help="Write the arm that results.")]
 Rate = Annotated[
     float | None,
     typer.Option(metavar="HZ", help="Samples per second to keep; 0 keeps all.", show_default="as many as the arm needs"),
