@@ -114,6 +114,13 @@ def quantity_of(name: str) -> str:
     return name.partition(" (")[0]
 
 
+def lateness_of(name: str, sources: Mapping[str, Source]) -> float:
+    """Compute the time [s] by which a column is late: a signal by its own shift and that of time, others by none."""
+    if name not in known_sensors():
+        return 0.0
+    return sources[name].corrections.shift + sources["time"].corrections.shift
+
+
 def check_names(names: Sequence[str]) -> str:
     """Find the input ("current" or "voltage") of a recording that has these columns.
 

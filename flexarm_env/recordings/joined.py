@@ -11,13 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.errors import InputError
-from flexarm_env.recordings.columns import UNITS, ColumnMap, Source, check_names, part_names, quantity_of
+from flexarm_env.recordings.columns import UNITS, ColumnMap, Source, check_names, lateness_of, part_names, quantity_of
 from flexarm_env.recordings.files import PathLike, files_of, read_bytes
 from flexarm_env.recordings.formats.catalogue import format_of
-from flexarm_env.recordings.joining import Part, join
+from flexarm_env.recordings.joining import Part, join, parts_by_lateness
 from flexarm_env.recordings.messages import file_error, quoted
 from flexarm_env.recordings.table import Table
-from flexarm_env.sensors import known_sensors
 
 Floats = NDArray[np.float64]
 
@@ -184,13 +183,9 @@ def _corrected(time: Floats, arrays: Mapping[str, Floats], sources: Mapping[str,
         arrays: (n,) in SI, by name.
         sources: their entries, with those of time.
     """
-    by_shift: dict[float, dict[str, Floats]] = {}
-    for name, values in arrays.items():
-        corrections = sources[name].corrections
-        shift = corrections.shift + sources["time"].corrections.shift if name in known_sensors() else 0.0
-        by_shift.setdefault(shift, {})[name] = replace(corrections, shift=0.0).apply(time, values)
-    with np.errstate(over="ignore"):
-        return [Part(time - shift, columns) for shift, columns in by_shift.items()]
+    plain = {name: replace(sources[name].corrections, shift=0.0) for name in arrays}
+    columns = {name: plain[name].apply(time, values) for name, values in arrays.items()}
+    return parts_by_lateness(time, columns, {name: lateness_of(name, sources) for name in arrays})
 
 
 def _by_file(columns: ColumnMap) -> dict[str, dict[str, Source]]:

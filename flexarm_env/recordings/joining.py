@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +24,21 @@ class Part:
 
     time: Floats
     columns: dict[str, Floats]
+
+
+def parts_by_lateness(time: Floats, columns: Mapping[str, Floats], lateness: Mapping[str, float]) -> list[Part]:
+    """Make a part of the columns that are late by the same time, with earlier times.
+
+    Args:
+        time: (n,) [s].
+        columns: (n,) each, by name.
+        lateness: of each [s].
+    """
+    found: dict[float, dict[str, Floats]] = {}
+    for name, values in columns.items():
+        found.setdefault(lateness[name], {})[name] = values
+    with np.errstate(over="ignore"):  # an overflow is reported where parts are joined
+        return [Part(time - late, those) for late, those in found.items()]
 
 
 def join(parts: list[Part]) -> dict[str, Floats]:

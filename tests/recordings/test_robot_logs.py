@@ -221,6 +221,19 @@ def test_held_readings_are_those_of_the_messages_of_their_topic(tmp_path: Path) 
     assert found[1].time[~np.isnan(found[1].signals["arm_angle"])] == pytest.approx(0.002 + 0.03 * np.arange(4))
 
 
+@pytest.mark.parametrize(("of_time", "own"), [("0 s", "30 ms"), ("30 ms", "0 s"), ("0.05 s", "-0.02 s")])
+def test_a_late_topic_is_moved_by_its_whole_shift(tmp_path: Path, of_time: str, own: str) -> None:
+    """By no whole number of the rows that commands between the readings make."""
+    sent = [("/motor", {"t": 10.0 * k - 2.0, "i": k}) for k in range(13)]
+    sent += [("/state", {"t": 10.0 * k + 30.0, "q": float(k)}) for k in range(12)]
+    shifted = {name: TOPICS[name] | {"shift": by} for name, by in (("time", of_time), ("arm_angle", own))}
+    shifted["time"] |= {"unit": "ms"}
+    run = Recording.read(messages(tmp_path / "run.mcap", sent), TOPICS | shifted)
+    measured = ~np.isnan(run.signals["arm_angle"])
+    assert run.time[measured] == pytest.approx(0.002 + 0.01 * run.signals["arm_angle"][measured], abs=1e-12)
+    assert measured.sum() == 12
+
+
 @pytest.mark.parametrize(
     ("times", "words"),
     [

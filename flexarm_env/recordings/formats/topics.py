@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from flexarm_env import units
 from flexarm_env.errors import InputError, did_you_mean
-from flexarm_env.recordings.columns import ColumnMap, Source, quantity_of
-from flexarm_env.recordings.joining import Part, join
+from flexarm_env.recordings.columns import ColumnMap, Source, lateness_of, quantity_of, si_factor
+from flexarm_env.recordings.joining import Part, join, parts_by_lateness
 from flexarm_env.recordings.messages import quoted
 from flexarm_env.recordings.resolution import repeated_readings
 from flexarm_env.recordings.table import MOST_LINES, Table
@@ -103,18 +103,21 @@ def _table(
     whole = all(isinstance(instants[0], int) for instants in times.values())
     factor = 1e-9 / units.factor(columns.sources["time"].unit, "s") if whole else 1.0
     first = min(instants[0] for instants in times.values())
-    parts = [
-        Part(
-            np.array([instant - first for instant in times[topic]], dtype=np.float64) * factor,
-            {
-                name: _without_repeats(columns.sources[name], values)
-                for name, values in zip(groups[topic], np.array(rows[topic], dtype=np.float64).T, strict=True)
-            },
-        )
-        for topic in groups
-    ]
-    done = {name: replace(one, corrections=replace(one.corrections, repeats=1)) for name, one in columns.sources.items()}
-    return Table(join(parts), done)
+    second = 1.0 / si_factor("time", columns.sources["time"], {})
+    lateness = {name: lateness_of(name, columns.sources) * second if len(groups) > 1 else 0.0 for name in columns.sources}
+    parts: list[Part] = []
+    for topic, names in groups.items():
+        time = np.array([instant - first for instant in times[topic]], dtype=np.float64) * factor
+        values = zip(names, np.array(rows[topic], dtype=np.float64).T, strict=True)
+        read = {name: _without_repeats(columns.sources[name], numbers) for name, numbers in values}
+        parts += parts_by_lateness(time, read, lateness)
+    return Table(join(parts), {name: _corrected(source, len(groups)) for name, source in columns.sources.items()})
+
+
+def _corrected(source: Source, topics: int) -> Source:
+    """Leave out the corrections of a source that are made before several topics, or the messages of one, are joined."""
+    corrections = replace(source.corrections, repeats=1)
+    return replace(source, corrections=replace(corrections, shift=0.0) if topics > 1 else corrections)
 
 
 def _check_times(times: Mapping[str, list[int | float]], path: str) -> None:
