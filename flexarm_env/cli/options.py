@@ -9,17 +9,16 @@ from typing import Annotated
 import typer
 
 from flexarm_env.arm_file import shipped_arms
-from flexarm_env.errors import InputError
 
 
 def place(text: str) -> Path:
     """Make the path of a file that is written; a Path would drop the slash that says a folder.
 
     Raises:
-        InputError: for a folder.
+        BadParameter: for a folder.
     """
     if text.endswith(("/", os.sep)):
-        raise InputError(f"cannot write {text}: it is a folder; name a file in it")
+        raise typer.BadParameter(f"{text} is a folder; name a file in it")
     return Path(text)
 
 

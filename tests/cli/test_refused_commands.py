@@ -73,8 +73,9 @@ def test_places_that_cannot_be_written_are_refused_before_the_work(flexarm, iden
 
 @pytest.mark.parametrize("option", ["--json", "--save", "--report", "--next-run"])
 def test_a_place_that_ends_in_a_slash_is_a_folder(flexarm, identify, runs, tmp_path, option):
-    assert "it is a folder; name a file in it" in flexarm.refused("diagnose", runs, option, f"{tmp_path}/new/")
-    assert "it is a folder; name a file in it" in flexarm.refused("simulate", "--save", f"{tmp_path}/new/")
+    line = f"'{option}': {tmp_path}/new/ is a folder; name a file in it"
+    assert line in flexarm.refused("diagnose", runs, option, f"{tmp_path}/new/")
+    assert f"{tmp_path}/new/ is a folder" in flexarm.refused("simulate", "--save", f"{tmp_path}/new/")
     assert identify.log == []
     assert not list(tmp_path.glob("new*"))
 
