@@ -20,9 +20,9 @@ from flexarm_env.identify.workers import Task, Workers
 IDENTIFY = "flexarm_env.identify"
 #: Functions whose calls are counted, with the CPU time of each call less that of the parts inside it.
 PARTS = {
-    "residual": [f"{IDENTIFY}.calibrate.objective:Objective.residual_of"],
+    "residual": [f"{IDENTIFY}.calibrate.objective:Objective._residual_by"],
     "initial state": [f"{IDENTIFY}.replay.start_fit:Stretch.fit", f"{IDENTIFY}.replay.start_fit:Stretch.follow"],
-    "plant": ["flexarm_env.plant.plant:Plant.__init__"],
+    "plant": ["flexarm_env.plant.plant:Plant._compile"],
     "observer": [f"{IDENTIFY}.replay.observer:physical_gains"],
     "replay": ["flexarm_env.plant.plant:Plant.play"],
 }

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
 
 from flexarm_env.arm import Arm
 from flexarm_env.arm_checks import check_constants
@@ -104,3 +105,19 @@ def with_stated(arm: Arm, stated: Stated) -> Arm:
 def plants_by_stated(arm: Arm, stated: Iterable[Stated], interval: float, vibrations: int = 0) -> dict[Stated, Plant]:
     """Build a plant for each distinct set of conditions, as `Arm.plant` does."""
     return {one: with_stated(arm, one).plant(interval, vibrations) for one in dict.fromkeys(stated)}
+
+
+def plants_of_arms(
+    arms: Sequence[Arm], stated: Iterable[Stated], interval: float, vibrations: int = 0
+) -> list[dict[Stated, Plant]]:
+    """Build the plants of each arm as `plants_by_stated` does, those of arms that differ in their numbers only in one pass."""
+    every = {one: _plants([with_stated(arm, one) for arm in arms], interval, vibrations) for one in dict.fromkeys(stated)}
+    return [{one: plants[place] for one, plants in every.items()} for place in range(len(arms))]
+
+
+def _plants(arms: Sequence[Arm], interval: float, vibrations: int) -> list[Plant]:
+    if len(arms) > 1 and not vibrations:
+        with suppress(ValueError):  # of more kinds than one
+            structures, laws = [arm.structure() for arm in arms], [arm.laws() for arm in arms]
+            return Plant.of_one_kind(structures, laws, arms[0].known.laws, interval)
+    return [arm.plant(interval, vibrations) for arm in arms]

@@ -31,6 +31,8 @@ from flexarm_env.plant.structure import (
     structure_of,
 )
 
+#: d, n, whole samples of delay.
+Packed = tuple[Matrix, NDArray[np.int64], int]
 RESPONSE = 5
 #: Longest steps [s] over which a force that depends on the motion is fitted by one quartic; with drag, by a parabola.
 LONGEST_STEP, LONGEST_STEP_WITH_DRAG = 5e-3, 2.5e-3
@@ -48,7 +50,7 @@ def pack(
     laws: Sequence[Sequence[ActiveLaw]],
     interval: float,
     decompose: Decompose = blocks_of,
-) -> tuple[Matrix, NDArray[np.int64], int]:
+) -> Packed:
     """Pack (d, n, whole samples of delay) for the kernel, without the tables that `prepare` writes.
 
     Args:
@@ -73,7 +75,7 @@ def pack(
     parts = np.zeros((*arms, 2))
     parts[..., 0], parts[..., 1] = early, interval - early
     steps = np.where(parts > 0.0, np.maximum(np.ceil(parts / _longest_step(n, active, interval) - 1e-9), 1), 0)
-    n[at.EARLY_SUBSTEPS], n[at.LATE_SUBSTEPS] = steps.reshape(-1, 2)[0].astype(int)
+    n[at.EARLY_SUBSTEPS], n[at.LATE_SUBSTEPS] = _common(steps.reshape(-1, 2).astype(int), "substeps of a sample")
     bodies = int(n[at.BODIES])
     lists, _ = law_lists(active, int(n[at.PARAMETERS]), bodies, model.signals)
     n[list(LAW_LISTS.values())] = at.COUNTS + np.cumsum([0, *map(len, lists[:-1])])
@@ -261,10 +263,26 @@ def _size_of_tables(n: NDArray[np.int64]) -> int:
 
 
 def split_delay(delay: ArrayLike, interval: float) -> tuple[int, Matrix]:
-    """Split a delay into whole samples and the rest [s], or the rests of some with as many; the whole part may be negative."""
-    whole = int(np.floor(np.ravel(delay)[0] / interval + 1e-9))
+    """Split a delay into whole samples and the rest [s], or the rests of some with as many; the whole part may be negative.
+
+    Raises:
+        ValueError: for delays of different whole parts.
+    """
+    whole = int(_common(np.floor(np.ravel(delay) / interval + 1e-9), "whole samples of delay"))
     rest = np.asarray(delay) - whole * interval
     return whole, np.where(rest > 1e-9 * interval, rest, 0.0)
+
+
+def _common(counts: Matrix | NDArray[np.int64], what: str) -> Matrix | NDArray[np.int64]:
+    """Look up the counts (arms, …) that all stacked arms share.
+
+    Raises:
+        ValueError: where they differ.
+    """
+    if (counts != counts[0]).any():
+        raise ValueError(f"stacked arms differ in their {what}: build a plant of their own")
+    common: Matrix | NDArray[np.int64] = counts[0]
+    return common
 
 
 def _record(

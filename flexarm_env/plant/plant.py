@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -12,8 +12,8 @@ from flexarm_env.plant.active_laws import ActiveLaw
 from flexarm_env.plant.assembly import assemble
 from flexarm_env.plant.beam import Matrix
 from flexarm_env.plant.compose import Law, compose
-from flexarm_env.plant.flat_arrays import RESPONSE, pack
-from flexarm_env.plant.structure import Structure, stacked
+from flexarm_env.plant.flat_arrays import RESPONSE, Packed, pack
+from flexarm_env.plant.structure import LinearModel, Structure, arm_of, stacked
 
 NO_GAINS = np.zeros((0, 0, 0))
 NO_INTERVALS = np.zeros(0)
@@ -31,11 +31,43 @@ class Plant:
     """
 
     def __init__(self, structure: Structure, active: Sequence[ActiveLaw], catalogue: Sequence[Law], interval: float) -> None:
-        self.kernel: Any = compose(catalogue)
         model = assemble(structure)
+        self._compile(structure, model, catalogue, pack(structure, model, [active], interval), interval)
+
+    @classmethod
+    def of_one_kind(
+        cls, structures: Sequence[Structure], laws: Sequence[Sequence[ActiveLaw]], catalogue: Sequence[Law], interval: float
+    ) -> list[Self]:
+        """Compile arms that differ in their numbers only, in one pass; each as it would be alone.
+
+        Args:
+            structures: the linear part of each.
+            laws: those that act on each.
+            catalogue: all laws of the catalogue.
+            interval: sampling time [s].
+
+        Raises:
+            ValueError: for arms of more kinds than one.
+        """
+        if len({tuple((law.kind, law.reads) for law in own) for own in laws}) > 1 or structures[0].vibrations:
+            raise ValueError("arms of more kinds than one: build a plant of each")
+        structure = stacked(structures)
+        model = assemble(structure)
+        constants, layout, delay = pack(structure, model, laws, interval)
+        plants = []
+        for arm, own in enumerate(structures):
+            plant = cls.__new__(cls)
+            plant._compile(own, arm_of(model, arm), catalogue, (constants[arm].copy(), layout, delay), interval)
+            plants.append(plant)
+        return plants
+
+    def _compile(
+        self, structure: Structure, model: LinearModel, catalogue: Sequence[Law], packed: Packed, interval: float
+    ) -> None:
+        self.kernel: Any = compose(catalogue)
         self.structure, self.model, self.interval = structure, model, interval
         self.signals = model.signals
-        self.constants, self.layout, self.delay_samples = pack(structure, model, [active], interval)
+        self.constants, self.layout, self.delay_samples = packed
         n, d = self.layout, self.constants
         self.blocks, self.states = int(n[at.BLOCKS]), int(n[at.STATES])
         self.bodies = int(n[at.BODIES])

@@ -34,8 +34,17 @@ SHORTEST_LAG = 1e-9
 
 
 def exceeds(quantity: float | Matrix, limit: float) -> bool:
-    """Whether a quantity of an arm, or of every stacked one, lies above a limit."""
-    return bool((quantity > limit).all()) if isinstance(quantity, np.ndarray) else quantity > limit
+    """Whether a quantity of an arm, or of every stacked one, lies above a limit.
+
+    Raises:
+        ValueError: for stacked arms of which some lie above it: they are not of one kind.
+    """
+    if not isinstance(quantity, np.ndarray):
+        return quantity > limit
+    above = quantity > limit
+    if above.any() != above.all():
+        raise ValueError("stacked arms are of different kinds: build a plant of their own")
+    return bool(above.all())
 
 
 @dataclass
@@ -181,6 +190,13 @@ class LinearModel:
     signals: list[str]
     settled: Matrix  # (extra, 2 coordinates): filters of accelerations from [q, q̇], of an arm long at constant speed
     tip: Matrix  # (coordinates,): deflection of the tip from the hub's line
+
+
+def arm_of(model: LinearModel, arm: int) -> LinearModel:
+    """Take the matrices of one arm out of those of stacked ones."""
+    arms = model.mass.ndim - 2
+    own = {name: value[arm] if isinstance(value, np.ndarray) and arms else value for name, value in vars(model).items()}
+    return LinearModel(**own)
 
 
 def structure_of(key: Key) -> Structure:

@@ -9,7 +9,7 @@ import pytest
 
 from flexarm_env import Arm, simulate
 from flexarm_env.identify.calibrate.common_scale import best_scale, force_power, force_powers, rescale, scale_deviation
-from flexarm_env.identify.calibrate.least_squares import cost_of
+from flexarm_env.identify.calibrate.least_squares import cost_of, one_by_one
 from flexarm_env.identify.calibrate.objective import Objective, objective_at
 from flexarm_env.identify.calibrate.parameters import FitParameters, free_parameters
 from flexarm_env.identify.calibrate.refine import gauss_newton, refine
@@ -99,7 +99,7 @@ def test_the_last_stretch_ends_where_the_normal_equations_say():
     matrix = draw.standard_normal((30, 4)) * np.array([1e4, 1.0, 1e-3, 1.0])
     matrix[:, 3] = matrix[:, 1]  # these two show together only
     aim, prior = draw.standard_normal(30), np.array([0.1, 0.2, 0.3, 0.4])
-    found = gauss_newton(lambda x: matrix @ x - aim, np.array([0.3, -0.2, 0.1, 0.5]), prior, SETTINGS.refining).x
+    found = gauss_newton(one_by_one(lambda x: matrix @ x - aim), np.array([0.3, -0.2, 0.1, 0.5]), prior, SETTINGS.refining).x
     exact = np.linalg.solve(matrix.T @ matrix + np.diag(prior**-2.0), matrix.T @ aim)
     np.testing.assert_allclose(found, exact, atol=1e-6)
 

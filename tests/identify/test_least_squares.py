@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from flexarm_env import Arm
 from flexarm_env.experiments.simulate import simulate
-from flexarm_env.identify.calibrate.least_squares import Ending, Goal, StepSizes, minimise
+from flexarm_env.identify.calibrate.least_squares import Ending, Goal, StepSizes, minimise, one_by_one
 from flexarm_env.identify.calibrate.objective import objective_at
 from flexarm_env.identify.calibrate.parameters import free_parameters
 from flexarm_env.identify.replay.dataset import prepare
@@ -36,7 +36,7 @@ def minimised(floor: float, most: float = np.inf) -> tuple[float, int]:
 
     steps, goal = StepSizes(*(np.full(2, 1e-4),) * 3), Goal(lambda left: float(left @ left), most)
     numbers = replace(SETTINGS.least_squares, steps=1)
-    found = minimise(residual, np.array([-1.2, 1.0]), np.full(2, 1e6), steps, numbers, Ending(40, 1e-6, goal))
+    found = minimise(one_by_one(residual), np.array([-1.2, 1.0]), np.full(2, 1e6), steps, numbers, Ending(40, 1e-6, goal))
     return float(found.residual @ found.residual), len(calls)
 
 
@@ -44,7 +44,8 @@ def test_a_linear_residual_ends_at_its_closed_form():
     rng = np.random.default_rng(0)
     slopes, offset, prior = rng.normal(size=(20, 3)), rng.normal(size=20), np.array([0.5, 1.0, 2.0])
     steps = StepSizes(*(np.full(3, 0.1),) * 3)
-    found = minimise(lambda x: slopes @ x + offset, np.zeros(3), prior, steps, SETTINGS.least_squares, Ending(JACOBIANS, 1e-12))
+    residuals, ending = one_by_one(lambda x: slopes @ x + offset), Ending(JACOBIANS, 1e-12)
+    found = minimise(residuals, np.zeros(3), prior, steps, SETTINGS.least_squares, ending)
     exact = -np.linalg.solve(slopes.T @ slopes + np.diag(prior**-2.0), slopes.T @ offset)
     assert found.x == pytest.approx(exact, abs=1e-6)
 

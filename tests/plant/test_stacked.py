@@ -8,6 +8,7 @@ from one_joint import elastic_joint, pendulum, servo
 from plant_arms import noise, relative
 
 from flexarm_env import Arm
+from flexarm_env.plant.plant import Plant
 
 #: What differs between the arms, from which value to which, by what they have in common.
 KINDS = {
@@ -74,3 +75,42 @@ def test_arms_of_another_kind_are_refused():
     plant, other = Arm.load("thesis").plant(0.005), Arm.load("thesis-fem")
     with pytest.raises(ValueError, match="another kind"):
         plant.constants_of([other.structure()], [other.laws()])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_plants_of_one_kind_move_as_each_alone(kind):
+    arms, current = drawn(kind, 3), noise(6, 60)
+    for arm, plant in zip(arms, of_one_kind(arms), strict=True):
+        own = arm.plant(0.005)
+        assert np.array_equal(plant.layout, own.layout)
+        for name, quantity in vars(own.model).items():
+            ours = getattr(plant.model, name)
+            assert ours == quantity if isinstance(quantity, list) else np.allclose(ours, quantity, rtol=1e-12), name
+        for one in (plant, own):
+            one.place()
+        assert relative(plant.replay(current), own.replay(current)) < 1e-9
+
+
+def of_one_kind(arms, interval=0.005):
+    structures, laws = [arm.structure() for arm in arms], [arm.laws() for arm in arms]
+    return Plant.of_one_kind(structures, laws, arms[0].known.laws, interval)
+
+
+@pytest.mark.parametrize(
+    ("effects", "interval"),
+    [
+        ([{"input_delay": {"delay": 0.004}}, {"input_delay": {"delay": 0.006}}], 0.005),  # a sample more
+        ([{"input_delay": {"delay": 0.002}}, {"input_delay": {"delay": 0.018}}], 0.02),  # other substeps
+        ([{}, {"gear_compliance": {}}], 0.005),
+        ([{"air_drag": {}}, {"cogging": {}}], 0.005),
+    ],
+)
+def test_plants_of_two_kinds_are_refused(effects, interval):
+    arms = []
+    for own in effects:
+        arm = Arm.load("thesis").with_effect("stribeck")
+        for name, values in own.items():
+            arm = arm.with_effect(name, **values)
+        arms.append(arm)
+    with pytest.raises(ValueError, match=r"kind|stacked"):
+        of_one_kind(arms, interval)

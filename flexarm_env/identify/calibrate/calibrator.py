@@ -244,7 +244,7 @@ class Calibrator:
         is_close = objective.excess_factor <= self.settings.errors.close  # and will be refined
         iterations = 1 if is_close else numbers.last_iterations
         steps, ending = found.solution.steps, Ending(iterations, numbers.final_tolerance)
-        solution = minimise(objective.residual, x, prior, steps, self.settings.least_squares, ending)
+        solution = minimise(objective.residuals, x, prior, steps, self.settings.least_squares, ending)
         refined = refine(objective, solution.x)
         moved, at = np.hypot(solution.x - x, refined.scatter), replace(solution, x=refined.x, residual=refined.residual)
         again = Calibration(parameters.apply(found.arm, refined.x), at, objective, moved, refined.jacobian)

@@ -14,7 +14,7 @@ from joblib import Parallel, delayed
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.calibrate.least_squares import descend
+from flexarm_env.identify.calibrate.least_squares import descend, one_by_one
 from flexarm_env.identify.calibrate.parameters import FitParameters
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.density import Prediction, likeliest, suited
@@ -97,7 +97,7 @@ def _descend(prediction: Prediction, parameters: FitParameters, slopes: Floats) 
     sigma = prediction.sigma.ravel()[:, None]
     numbers, prior = prediction.dataset.settings.least_squares, narrowed(parameters, prediction)
     x = parameters.position(prediction.arm)
-    x, whitened = descend(Residual(prediction, parameters), x, slopes / sigma, prior, numbers)
+    x, whitened = descend(one_by_one(Residual(prediction, parameters)), x, slopes / sigma, prior, numbers)
     return x, whitened * sigma
 
 

@@ -77,7 +77,7 @@ def _scatter(calibration: Calibration, powers: NDArray[np.int64]) -> Floats:
     rest = np.eye(len(x)) - np.outer(powers, onto_scale) / max(float(onto_scale @ powers), LEAST_NORM)
     narrow = calibration.narrow
     if narrow is None:
-        narrow = slopes(objective.residual, x, solution.residual, np.full(len(x), settings.refining.difference))
+        narrow = slopes(objective.residuals, x, solution.residual, np.full(len(x), settings.refining.difference))
     by_left = objective.rows_of(objective.weights.sigma / _left_by(calibration))
     variances = []
     for changes in (solution.jacobian, narrow):

@@ -8,17 +8,17 @@ steps of a fixed relative size, and cannot take columns over from an earlier fit
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from joblib import Parallel, delayed
 from numpy.typing import NDArray
 
 from flexarm_env.identify.settings import LEAST_NORM, LeastSquares
 
 Floats = NDArray[np.float64]
-Residual = Callable[[Floats], Floats]
+#: The residual (rows,) at each of some points (x,).
+Residuals = Callable[[Sequence[Floats]], Sequence[Floats]]
 
 
 @dataclass(frozen=True)
@@ -104,37 +104,40 @@ class Ending:
     goal: Goal | None = None
 
 
-def jacobian(residual: Residual, x: Floats, steps: Floats, first: int = 0) -> Floats:
-    """Compute central differences (rows, steps) of the residual over steps to either side, of x from the first on.
-
-    Columns are computed in one thread unless a `Workers.threads` context is open.
-    """
-
-    def column(k: int, width: float) -> Floats:
-        there, back = _aside(x, first + k, width), _aside(x, first + k, -width)
-        return (residual(there) - residual(back)) / (2.0 * width)
-
-    return _in_columns(column, steps) if len(steps) else np.zeros((len(residual(x)), 0))
+def one_by_one(residual: Callable[[Floats], Floats]) -> Residuals:
+    """Make residuals at some points of a residual (rows,) at one (x,)."""
+    return lambda points: [residual(x) for x in points]
 
 
-def slopes(residual: Residual, x: Floats, here: Floats, steps: Floats) -> Floats:
+def jacobian(residuals: Residuals, x: Floats, steps: Floats, first: int = 0) -> Floats:
+    """Compute central differences (rows, steps) of the residual over steps to either side, of x from the first on."""
+    if not len(steps):
+        return np.zeros((len(residuals([x])[0]), 0))
+    found = residuals([_aside(x, first + k, side * width) for k, width in enumerate(steps) for side in (1.0, -1.0)])
+    pairs = zip(found[::2], found[1::2], steps, strict=True)
+    return _of_columns([(there - back) / (2.0 * width) for there, back, width in pairs])
+
+
+def slopes(residuals: Residuals, x: Floats, here: Floats, steps: Floats) -> Floats:
     """Compute differences (rows, x) of the residual over steps to one side.
 
     Half the replays of central ones, where steps are so narrow that the residual is straight over them. Steps up are taken, or
     steps down where a value has no room above.
 
     Args:
-        residual: whitened residual (rows,).
+        residuals: whitened residuals (rows,) at some points.
         x: where (x,).
         here: the residual there (rows,).
         steps: widths (x,).
     """
-
-    def column(k: int, width: float) -> Floats:
-        change = residual(_aside(x, k, width)) - here
-        return change / width if change.any() else (here - residual(_aside(x, k, -width))) / width
-
-    return _in_columns(column, steps) if len(steps) else np.zeros((len(here), 0))
+    if not len(steps):
+        return np.zeros((len(here), 0))
+    found = residuals([_aside(x, k, width) for k, width in enumerate(steps)])
+    columns = [(above - here) / width for above, width in zip(found, steps, strict=True)]
+    still = [k for k, column in enumerate(columns) if not column.any()]
+    for k, below in zip(still, residuals([_aside(x, k, -steps[k]) for k in still]) if still else (), strict=True):
+        columns[k] = (here - below) / steps[k]
+    return _of_columns(columns)
 
 
 def _aside(x: Floats, k: int, width: float) -> Floats:
@@ -143,8 +146,7 @@ def _aside(x: Floats, k: int, width: float) -> Floats:
     return there
 
 
-def _in_columns(column: Callable[[int, float], Floats], steps: Floats) -> Floats:
-    columns = Parallel(require="sharedmem")(delayed(column)(k, width) for k, width in enumerate(steps))
+def _of_columns(columns: Sequence[Floats]) -> Floats:
     return np.nan_to_num(np.stack(columns, axis=1))
 
 
@@ -155,7 +157,7 @@ def cost_of(residual: Floats, x: Floats, prior: Floats) -> float:
 
 
 def minimise(
-    residual: Residual,
+    residuals: Residuals,
     x: Floats,
     prior: Floats,
     steps: StepSizes,
@@ -168,7 +170,7 @@ def minimise(
     The first Jacobian says nothing of the next ones: its differences may be far too wide.
 
     Args:
-        residual: whitened residual (rows,).
+        residuals: whitened residuals (rows,) at some points.
         x: where to start.
         prior: standard deviation of each x around 0.
         steps: of the differences; of the last of x, where there are frozen columns.
@@ -176,7 +178,7 @@ def minimise(
         ending: of the minimisation.
         frozen: Jacobian (rows, first columns) taken over from elsewhere and not computed again.
     """
-    r = residual(x)
+    r = residuals([x])[0]
     point = _Point(x, r, cost_of(r, x, prior), numbers.first_damping)
     known = 0 if frozen is None else frozen.shape[1]
     j = np.empty((len(r), len(x)))
@@ -185,9 +187,9 @@ def minimise(
     goal = ending.goal
     for left in reversed(range(ending.iterations)):
         if known < len(x):
-            j[:, known:] = jacobian(residual, point.x, steps.now, known)
+            j[:, known:] = jacobian(residuals, point.x, steps.now, known)
         before = point
-        point = _descend(residual, point, j, prior, numbers)
+        point = _descend(residuals, point, j, prior, numbers)
         stays = before.cost - point.cost < ending.tolerance * before.cost
         finer = steps.adapted(point.residual, j[:, known:], grow=not stays)
         if stays and np.all(finer.now > numbers.shrinks * steps.now):
@@ -209,11 +211,11 @@ class _Point:
     damping: float
 
 
-def descend(residual: Residual, x: Floats, slopes: Floats, prior: Floats, numbers: LeastSquares) -> tuple[Floats, Floats]:
+def descend(residuals: Residuals, x: Floats, slopes: Floats, prior: Floats, numbers: LeastSquares) -> tuple[Floats, Floats]:
     """Lower |residual(x)|² + |x / prior|² by damped steps along one Jacobian, which each corrects for the next.
 
     Args:
-        residual: whitened residual (rows,).
+        residuals: whitened residuals (rows,) at some points.
         x: where to start (x,).
         slopes: Jacobian there (rows, x).
         prior: standard deviation of each x around 0.
@@ -222,12 +224,12 @@ def descend(residual: Residual, x: Floats, slopes: Floats, prior: Floats, number
     Returns:
         Where the steps ended (x,), and the Jacobian that they corrected (rows, x).
     """
-    r, j = residual(x), slopes.copy()
+    r, j = residuals([x])[0], slopes.copy()
     point = _Point(x, r, cost_of(r, x, prior), numbers.first_damping)
-    return _descend(residual, point, j, prior, numbers).x, j
+    return _descend(residuals, point, j, prior, numbers).x, j
 
 
-def _descend(residual: Residual, point: _Point, j: Floats, prior: Floats, numbers: LeastSquares) -> _Point:
+def _descend(residuals: Residuals, point: _Point, j: Floats, prior: Floats, numbers: LeastSquares) -> _Point:
     """Take damped steps along one Jacobian, which each corrects in place for the next, while they lower the cost enough."""
     x, r, cost, damping = point.x, point.residual, point.cost, point.damping
     for number in range(numbers.steps):
@@ -237,7 +239,7 @@ def _descend(residual: Residual, point: _Point, j: Floats, prior: Floats, number
         for _ in range(1 if number else numbers.trials):
             step = -np.linalg.solve(normal + damping * np.diag(np.diag(normal)), slope)
             step = np.clip(step, -numbers.largest_step, numbers.largest_step)
-            trial = residual(x + step)
+            trial = residuals([x + step])[0]
             new = cost_of(trial, x + step, prior)
             if new < cost:
                 j += secant_correction(trial - r - j @ step, step, np.diag(normal))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from joblib import Parallel, delayed
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
@@ -85,9 +86,20 @@ class Objective:
         """Compute the errors over sigma (rows,), run by run, sample by sample, signal by signal."""
         return self.residual_of(self.parameters.apply(self.arm, x))
 
+    def residuals(self, points: Sequence[Floats]) -> list[Floats]:
+        """Compute the residual at each of some points (x,), in threads where a `Workers.threads` context is open."""
+        arms = [self.parameters.apply(self.arm, x) for x in points]
+        every = self.dataset.plants_of(arms, self.reduced)
+        pairs = zip(arms, every, strict=True)
+        found: list[Floats] = Parallel(require="sharedmem")(delayed(self._residual_by)(arm, plants) for arm, plants in pairs)
+        return found
+
     def residual_of(self, arm: Arm) -> Floats:
         """Compute the residual of another arm under the same weights."""
-        pairs = zip(self.errors_of(arm), self.weights.sigma, strict=True)
+        return self._residual_by(arm, self.dataset.plants(arm, self.reduced))
+
+    def _residual_by(self, arm: Arm, plants: Mapping[Stated, Plant]) -> Floats:
+        pairs = zip(self._errors_by(arm, plants, self.dataset.fitted), self.weights.sigma, strict=True)
         return self._bounded([(error / sigma).ravel() for error, sigma in pairs])
 
     def residual_by_own_observers(self, arm: Arm) -> Floats:
@@ -166,7 +178,10 @@ class Objective:
         return np.clip(np.nan_to_num(np.concatenate(parts), nan=largest), -largest, largest)
 
     def _errors(self, arm: Arm, runs: Sequence[Run]) -> list[Floats]:
-        dataset, plants = self.dataset, self.dataset.plants(arm, self.reduced)
+        return self._errors_by(arm, self.dataset.plants(arm, self.reduced), runs)
+
+    def _errors_by(self, arm: Arm, plants: Mapping[Stated, Plant], runs: Sequence[Run]) -> list[Floats]:
+        dataset = self.dataset
         judges_free_run = error_measure(arm).judges_free_run
         errors = []
         for place, run in enumerate(runs):

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.identify.calibrate.common_scale import best_scale, force_powers
-from flexarm_env.identify.calibrate.least_squares import Residual, cost_of, secant_correction, slopes
+from flexarm_env.identify.calibrate.least_squares import Residuals, cost_of, secant_correction, slopes
 from flexarm_env.identify.calibrate.objective import Objective, objective_at
 from flexarm_env.identify.replay.scales import torque_scale
 from flexarm_env.identify.settings import LEAST_NORM, Refining
@@ -41,32 +41,32 @@ class Refined:
     scatter: Floats | float = 0.0
 
 
-def gauss_newton(residual: Residual, x: Floats, prior: Floats, numbers: Refining) -> Refined:
+def gauss_newton(residuals: Residuals, x: Floats, prior: Floats, numbers: Refining) -> Refined:
     """Minimise |residual(x)|² + |x / prior|² by damped Gauss–Newton steps, which each correct the Jacobian.
 
     The steps end where one promises less than chance, or gives much less than it promised. The Jacobian is then computed anew if
     they lowered the cost enough.
 
     Args:
-        residual: whitened residual (rows,).
+        residuals: whitened residuals (rows,) at some points.
         x: where to start (x,).
         prior: standard deviation of each x around 0.
         numbers: differences, dampings and stopping rule.
     """
-    r = residual(x)
+    r = residuals([x])[0]
     here = Refined(x, r, cost_of(r, x, prior), None)
     for _ in range(numbers.iterations):
-        j = slopes(residual, here.x, here.residual, np.full(len(x), numbers.difference))
+        j = slopes(residuals, here.x, here.residual, np.full(len(x), numbers.difference))
         before, here, keeps = here.cost, replace(here, jacobian=j), True
         while keeps:
-            ahead, promised = _step(residual, here, prior, numbers)
+            ahead, promised = _step(residuals, here, prior, numbers)
             keeps, here = here.cost - ahead.cost > numbers.kept * promised, ahead
         if promised < numbers.least_promise or before - here.cost < numbers.tolerance * before:
             break
     return here
 
 
-def _step(residual: Residual, here: Refined, prior: Floats, numbers: Refining) -> tuple[Refined, float]:
+def _step(residuals: Residuals, here: Refined, prior: Floats, numbers: Refining) -> tuple[Refined, float]:
     """Take the least damped step that lowers the cost; also give the decrease that an undamped one promises."""
     assert here.jacobian is not None
     j = here.jacobian * prior
@@ -76,7 +76,7 @@ def _step(residual: Residual, here: Refined, prior: Floats, numbers: Refining) -
     promised = float(np.sum(slope**2 / (strengths + 1.0)))
     for damping in numbers.dampings if promised >= numbers.least_promise else ():
         step = -prior * (axes @ (slope / (strengths + 1.0 + damping)))
-        left = residual(here.x + step)
+        left = residuals([here.x + step])[0]
         cost = cost_of(left, here.x + step, prior)
         if cost < here.cost:
             missed = left - here.residual - here.jacobian @ step
@@ -164,7 +164,7 @@ def _descend(objective: Objective, x: Floats, levels: Sequence[float]) -> list[_
     numbers, ends = objective.dataset.settings.refining, []
     for noise in [*(level * scale for level in levels if level * scale > own), own]:
         level = objective if noise == own else _at_level(objective, x, noise)
-        ends.append(_End(level, gauss_newton(level.residual, x, level.weights.prior, numbers)))
+        ends.append(_End(level, gauss_newton(level.residuals, x, level.weights.prior, numbers)))
         x = ends[-1].found.x
     return ends
 

@@ -85,7 +85,7 @@ class Schedule:
             return found
         fine = found.steps.finer(settings.least_squares.fine)
         ending = Ending(self.iterations, settings.calibrating.final_tolerance)
-        again = minimise(objective.residual, found.x, objective.weights.prior, fine, settings.least_squares, ending)
+        again = minimise(objective.residuals, found.x, objective.weights.prior, fine, settings.least_squares, ending)
         return replace(again, steps=found.steps) if again.cost < found.cost else found
 
     def _minimise(self, objective: Objective, x: Floats, steps: StepSizes, last: bool, goal: Goal | None = None) -> Solution:
@@ -95,4 +95,4 @@ class Schedule:
         tolerance = calibrating.final_tolerance if last else calibrating.tolerance
         steps = steps.narrowed(numbers.narrow) if last else steps
         ending = Ending(self.iterations, tolerance, goal)
-        return minimise(objective.residual, x, objective.weights.prior, steps, numbers, ending)
+        return minimise(objective.residuals, x, objective.weights.prior, steps, numbers, ending)

@@ -105,7 +105,7 @@ def _constants(base: Baseline, along: Along) -> list[ConstantExcitation]:
     """Estimate the interval of each constant, over wide differences and over narrow ones, whichever gives more."""
     objective, settings = base.objective, base.objective.dataset.settings
     parameters = objective.parameters
-    narrow = jacobian(objective.residual, base.x, np.full(len(base.x), settings.refining.difference))
+    narrow = jacobian(objective.residuals, base.x, np.full(len(base.x), settings.refining.difference))
     posterior = np.maximum(_deviations(base, base.jacobian, along), _deviations(base, narrow, along))
     triples = zip(parameters, parameters.priors, posterior, strict=True)
     return [_constant(base.arm, parameter, float(prior), float(after), settings) for parameter, prior, after in triples]

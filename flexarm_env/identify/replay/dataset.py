@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
-from flexarm_env.experiments.stated import Stated, plants_by_stated
+from flexarm_env.experiments.stated import Stated, plants_of_arms
 from flexarm_env.identify.replay.build_run import build_run, first_stretch, with_sensors
 from flexarm_env.identify.replay.loop import Loop
 from flexarm_env.identify.replay.plausible import check_recording
@@ -99,7 +99,11 @@ class Dataset:
             arm: the model.
             reduced: whether its beam is left the `vibrations` alone, for replays that lead to a model and do not judge it.
         """
-        return plants_by_stated(arm, (run.stated for run in self.runs), self.interval, self.vibrations if reduced else 0)
+        return self.plants_of([arm], reduced)[0]
+
+    def plants_of(self, arms: Sequence[Arm], reduced: bool = False) -> list[dict[Stated, Plant]]:
+        """Build the plants of each of some arms, as `plants` does: quicker than one by one where only numbers differ."""
+        return plants_of_arms(arms, [run.stated for run in self.runs], self.interval, self.vibrations if reduced else 0)
 
     def stretch(self, run: Run, loop: Loop | None = None) -> Stretch:
         """Cut out the first samples of a run, to which its initial state is fitted.

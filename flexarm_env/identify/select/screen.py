@@ -81,7 +81,7 @@ def attempt(base: Baseline, signature: Signature | None) -> Trial:
     start = added.position(arm)
     steps, x = added.step_sizes(start, dataset.settings.parameters), np.concatenate([base.x, start])
     ending = Ending(screening.iterations, screening.tolerance)
-    solution = minimise(objective.residual, x, prior, steps, dataset.settings.least_squares, ending, base.jacobian)
+    solution = minimise(objective.residuals, x, prior, steps, dataset.settings.least_squares, ending, base.jacobian)
     best = objective.parameters.apply(arm, solution.x)
     held_out = objective.held_out_residual_of(best)
     return Trial(name, best, solution.cost, float(held_out @ held_out))

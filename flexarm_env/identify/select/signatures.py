@@ -127,7 +127,7 @@ def baseline_of(objective: Objective, steps: Floats) -> Baseline:
     """Build the baseline of an objective's own arm, with differences over steps (x,)."""
     x = objective.parameters.position(objective.arm)
     residual = objective.residual(x)
-    slopes = jacobian(objective.residual, x, steps)
+    slopes = jacobian(objective.residuals, x, steps)
     prior = np.diag(1.0 / objective.weights.prior)
     orthonormal = np.linalg.qr(np.vstack([slopes, prior]))[0][: len(residual)]
     return Baseline(objective, x, residual, slopes, orthonormal)
