@@ -18,6 +18,7 @@ from agents.learning.episodes import EpisodeVecEnv
 from agents.learning.models import ON_POLICY, make_model
 from agents.learning.options import Plan
 from flexarm_env import Arm, InputError, __version__
+from flexarm_env.arm_text import arm_text
 from flexarm_env.terminal.provenance import commit
 
 #: Called with the finished share and one line about it.
@@ -80,15 +81,18 @@ def train(plan: Plan, seed: int, place: Path | None, report: Report, tensorboard
         tensorboard: folder for TensorBoard.
 
     Raises:
-        InputError: for a plan with a missing arm, or a checkpoint of another plan.
+        InputError: for a plan with a missing arm, or a checkpoint of another plan, arm, seed or version.
     """
     torch.set_num_threads(1)
     arm = Arm.load(plan.arm)
     env = EpisodeVecEnv(plan, arm, seed)
-    run: dict[str, Any] = {"seed": seed, "plan": plan.table(), "seconds": 0.0, "curve": []}
+    work = {"plan": plan.table(), "arm": arm_text(arm), "seed": seed, "version": __version__}
+    run: dict[str, Any] = {**work, "seconds": 0.0, "curve": []}
     state = read_checkpoint(place) if place is not None and place.is_file() else None
-    if state is not None and (state["run"]["plan"], state["run"]["seed"]) != (run["plan"], seed):
-        raise InputError(f"{place} is of another plan or seed; delete it to start anew, or name another folder")
+    if state is not None and state["run"] != state["run"] | work:
+        raise InputError(
+            f"{place} is of another plan, arm, seed or version of FlexArm; delete it to start anew, or name another folder"
+        )
     model = make_model(plan, env, seed)
     model.set_logger(configure(str(tensorboard) if tensorboard else None, ["tensorboard"] if tensorboard else []))
     if state is not None:

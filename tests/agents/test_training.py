@@ -82,6 +82,22 @@ def test_a_checkpoint_of_another_plan_is_refused(tmp_path: Path, monkeypatch: py
         train(small(actions=80), 3, tmp_path / "a.checkpoint", silent)
 
 
+def test_a_checkpoint_of_another_arm_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Though its file has the same name."""
+    monkeypatch.setattr("agents.learning.run.BETWEEN", 0.0)
+    arm, place = Arm.load("thesis"), tmp_path / "a.checkpoint"
+    arm.save(tmp_path / "arm.toml")
+    plan = small(arm=str(tmp_path / "arm.toml"), actions=60)
+    train(plan, 3, place, silent)
+    arm.with_values({"hub.inertia": 0.3}).save(tmp_path / "arm.toml")
+    with pytest.raises(InputError, match=r"a\.checkpoint is of another plan, arm, seed or version"):
+        train(plan, 3, place, silent)
+    arm.save(tmp_path / "arm.toml")
+    monkeypatch.setattr("agents.learning.run.__version__", "0.0.0")
+    with pytest.raises(InputError, match="version of FlexArm"):
+        train(plan, 3, place, silent)
+
+
 def test_a_damaged_checkpoint_is_refused_in_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("agents.learning.run.BETWEEN", 0.0)
     place = tmp_path / "a.checkpoint"
