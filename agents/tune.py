@@ -14,10 +14,11 @@ from pathlib import Path
 from agents.learning.options import Plan
 from agents.learning.plan_file import read_plan, read_table
 from flexarm_env import Arm
+from flexarm_env.arm_text import arm_text
 from flexarm_env.terminal.outputs import make_folder
 from flexarm_env.terminal.program import Program
-from flexarm_env.tuning.judge import cells_of, score
-from flexarm_env.tuning.search import Budget, tune
+from flexarm_env.tuning.judge import Cell, cells_of, score
+from flexarm_env.tuning.search import Budget, study_name, tune
 from flexarm_env.tuning.spaces import SPACES, Range, nested, space_of
 from flexarm_env.tuning.study import Study, Values
 
@@ -40,12 +41,11 @@ def changed(plan: Plan, values: Mapping[str, float]) -> Plan:
     return read_table(table)
 
 
-def score_of(plan: Plan, seed: int, budget: Budget) -> float:
-    """Train once, and compute the score on the cells of the plan's task."""
+def score_of(plan: Plan, seed: int, cells: Sequence[Cell], budget: Budget) -> float:
+    """Train once, and compute the score on cells of the plan's task."""
     from agents.learning.run import train
 
     made = train(plan, seed, None, lambda share, text: None)
-    cells = cells_of(made.arm, budget.arms, budget.seed, (plan.task,))
     return score(made.agent, made.arm, cells, budget.arms, budget.seed)
 
 
@@ -56,13 +56,16 @@ def tune_policy(config: Path, actions: int, budget: Budget, journal: Path | None
         config: TOML file to start from.
         actions: in the training of each trial.
         budget: of the search.
-        journal: file in which trials outlast a stop.
+        journal: file in which trials outlast a stop; those of another configuration or arm are left alone.
     """
     plan = read_table(read_plan(config).table() | {"actions": actions})
-    study = Study(f"{config.stem} {actions} {budget.arms} {budget.seed}", PLAN_SPACE, journal)
+    arm = Arm.load(plan.arm)
+    cells = cells_of(arm, budget.arms, budget.seed, (plan.task,))
+    name = study_name(config.stem, budget, plan.table(), arm_text(arm), cells, PLAN_SPACE)
+    study = Study(name, PLAN_SPACE, journal)
 
     def objective(values: Values) -> float:
-        return score_of(changed(plan, values), len(study.finished()), budget)
+        return score_of(changed(plan, values), len(study.finished()), cells, budget)
 
     study.run(budget.trials, budget.seed, objective, report=said(config.stem, budget))
     return study.best()[0]

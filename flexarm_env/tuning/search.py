@@ -81,8 +81,7 @@ def tune(
         return found if measured_margins(controller, arm, options) else found + UNSTABLE
 
     first = first_values(controller, arm, space, start)
-    digest = hashlib.sha256(f"{arm_text(arm)} {first} {cells} {space}".encode()).hexdigest()[:12]
-    study = Study(f"{controller} {digest} {budget.arms} {budget.seed}", space, journal)
+    study = Study(study_name(controller, budget, arm_text(arm), first, cells, space), space, journal)
     study.run(budget.trials, budget.seed, objective, first, report)
     values, least = study.best()
     options = nested({name: float(f"{value:.4g}") for name, value in values.items()})
@@ -93,6 +92,18 @@ def tune(
         "score_before": round(study.finished()[0].value, 4),
     }
     return TunedController(controller, arm.name, __version__, options, about, measured_margins(controller, arm, options))
+
+
+def study_name(subject: str, budget: Budget, *depends_on: object) -> str:
+    """Name the study of a subject in a journal, so that only searches whose trials have the same scores share them.
+
+    Args:
+        subject: law or policy.
+        budget: of the search; the number of trials is left out.
+        depends_on: all else on which the score of a trial depends, as text or values with a repr.
+    """
+    digest = hashlib.sha256(" ".join(map(str, depends_on)).encode()).hexdigest()[:12]
+    return f"{subject} {digest} {budget.arms} {budget.seed}"
 
 
 def measured_margins(controller: str, arm: Arm, options: Mapping[str, Any]) -> dict[str, float]:

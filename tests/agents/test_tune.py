@@ -12,10 +12,12 @@ pytest.importorskip("optuna")
 from agents.learning.episodes import SEEDS_EACH
 from agents.learning.options import Plan
 from agents.learning.plan_file import read_table
-from agents.tune import PLAN_SPACE, changed, main
+from agents.tune import PLAN_SPACE, changed, main, tune_policy
+from flexarm_env import Arm
 from flexarm_env.controllers.tuned import TunedController
 from flexarm_env.trials.sets import DEVELOPMENT_SEED, FIRST_SEED, SEARCH_SEED
 from flexarm_env.tuning import judge
+from flexarm_env.tuning.search import Budget
 
 TINY = "actions = 20\nat_once = 2\n[network]\nlayers = [4]\n[learning]\nbatch_size = 20\n[interface]\nrepeat = 100\n"
 
@@ -50,6 +52,25 @@ def test_the_search_of_a_policy_goes_on_where_another_stopped(tmp_path: Path, ca
     assert main([*command, "--trials", "1"]) == 0
     assert main([*command, "--trials", "2"]) == 0
     assert "2 of 2" in capsys.readouterr().err
+
+
+def test_trials_of_another_configuration_or_arm_are_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    config, arm, journal = tmp_path / "tiny.toml", tmp_path / "arm.toml", tmp_path / "search.journal"
+    trained = []
+
+    def score_of(plan: Plan, *rest: object) -> float:
+        trained.append((plan.interface.base, Arm.load(plan.arm).value("hub.inertia")))
+        return 1.0
+
+    monkeypatch.setattr("agents.tune.score_of", score_of)
+    monkeypatch.setattr(judge, "CELLS", judge.CELLS[:1])
+    heavy = Arm.load("thesis").with_values({"hub.inertia": 0.3})
+    for base, machine in (("none", Arm.load("thesis")), ("pd", Arm.load("thesis")), ("pd", heavy), ("pd", heavy)):
+        machine.save(arm)
+        config.write_text(f"arm = '{arm}'\n{TINY}base = '{base}'\n")
+        tune_policy(config, 20, Budget(trials=1, arms=2), journal)
+    light = Arm.load("thesis").value("hub.inertia")
+    assert trained == [("none", light), ("pd", light), ("pd", 0.3)]
 
 
 @pytest.mark.parametrize(
