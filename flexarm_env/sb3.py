@@ -13,6 +13,7 @@ from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
 from flexarm_env.env.infos import Infos, Step
+from flexarm_env.env.seeds import seeds_of
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.registration import IDS, SHAPED
 from flexarm_env.vector_env import FlexArmVectorEnv
@@ -42,7 +43,7 @@ def make_vec(id: str, num_envs: int = 1, seed: int | None = None, **arguments: A
         arguments: of FlexArmVectorEnv.
 
     Raises:
-        InputError: for an id of no environment of arms, and arguments that do not exist or do not make sense.
+        InputError: for an id of no environment of arms, a seed that is none, and arguments that do not exist or do not make sense.
 
     Examples:
         >>> vec = make_vec("FlexArm/Slew-v0", 8, seed=0)
@@ -96,9 +97,14 @@ class FlexArmVecEnv(VecEnv):
         self.__dict__.update(state, began=time.perf_counter() - state["began"])
 
     def seed(self, seed: int | None = None) -> list[int | None]:
-        """Set the seed of the next reset: arm i gets seed + i."""
+        """Set the seed of the next reset: arm i gets seed + i.
+
+        Raises:
+            InputError: for a seed that is no whole number from 0 to 2⁶⁴ − 1.
+        """
+        seeds = seeds_of(seed, self.num_envs)
         self.next_seed = seed
-        return [None if seed is None else seed + i for i in range(self.num_envs)]
+        return seeds
 
     def reset(self) -> Array:
         """Start an episode of every arm; return observations (arms, signals + 1).

@@ -18,6 +18,7 @@ from flexarm_env.env.arguments import ArmLike, EnvArguments, check_count, find_p
 from flexarm_env.env.batch import Batch
 from flexarm_env.env.flexarm import spaces_of
 from flexarm_env.env.layout import REWARD, SAMPLE_COUNT, TERMINATED
+from flexarm_env.env.seeds import seeds_of
 from flexarm_env.env.spec import plain_spec
 from flexarm_env.env.start import Start, find_start
 from flexarm_env.env.state import State
@@ -106,13 +107,13 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         """Start an episode of every arm, or of those in options["reset_mask"] (arms,).
 
         Args:
-            seed: arm i gets seed + i; or one for each; or none, to go on.
+            seed: arm i gets seed + i; or one for each, from 0 to 2⁶⁴ − 1; or none, to go on, at first at random.
             options: "reset_mask", a boolean for each arm; "state" and "target" as of the single environment, one for all or one
                 for each arm, or a State of all arms.
 
         Raises:
-            InputError: for an option that does not exist or does not make sense, seeds or a mask of another length, or seeds
-                beside a State.
+            InputError: for an option that does not exist or does not make sense, seeds that are none, seeds or a mask of another
+                length, or seeds beside a State; the present episodes then go on.
         """
         start = find_start(options, self.setup, (self.num_envs, self.batch.plant.states), ("reset_mask",))
         start.check_seed(seed)
@@ -124,8 +125,13 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         chosen = self.every[np.asarray(mask)]
         if start.state is not None:
             return self._go_on(start, chosen)
-        seeds = self._seeds(seed)
+        first = None if self.started else int(self.np_random.integers(2**62))
+        seeds = seeds_of(first if seed is None else seed, self.num_envs)
+        if first is not None:
+            seeds = [first + i if one is None else one for i, one in enumerate(seeds)]
         self.batch.reset(chosen, [seeds[i] for i in chosen], start)
+        if seed is not None and np.ndim(seed) == 0:
+            super().reset(seed=seeds[0])
         self.over[chosen] = False
         self.started = True
         return self.batch.observations.copy(), self._info(np.asarray(mask))
@@ -176,20 +182,6 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
             self.view = View(self.setup, "rgb_array", self.setup.rate)
         pictures = (self.view.draw(self.batch, arm) for arm in range(self.num_envs))
         return tuple(picture for picture in pictures if picture is not None)
-
-    def _seeds(self, seed: int | Sequence[int | None] | None) -> list[int | None]:
-        if seed is None:
-            if self.started:
-                return [None] * self.num_envs
-            seed = int(self.np_random.integers(2**62))
-        if isinstance(seed, int | np.integer):
-            self._np_random, self._np_random_seed = gym.utils.seeding.np_random(int(seed))
-            return [int(seed) + i for i in range(self.num_envs)]
-        if not isinstance(seed, Sequence | np.ndarray) or not all(s is None or isinstance(s, int | np.integer) for s in seed):
-            raise InputError(f"seed = {seed!r}; give a whole number, or one for each arm")
-        if len(seed) != self.num_envs:
-            raise InputError(f"{len(seed)} seeds for {self.num_envs} arms; give one for each, or one number")
-        return list(seed)
 
     def step(self, actions: Array) -> tuple[Array, Array, Array, Array, dict[str, Any]]:
         """Apply the commands actions · limit (arms, 1) for one sample.

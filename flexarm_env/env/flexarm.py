@@ -16,6 +16,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.env.arguments import ArmLike, EnvArguments, find_prior, make_setup
 from flexarm_env.env.batch import Batch
 from flexarm_env.env.layout import LARGEST_ACTION, REWARD, SAMPLE_COUNT, TERMINATED
+from flexarm_env.env.seeds import one_seed
 from flexarm_env.env.setup import Setup
 from flexarm_env.env.spec import plain_spec
 from flexarm_env.env.start import find_start
@@ -106,24 +107,25 @@ class FlexArmEnv(gym.Env[Observation, NDArray[np.float32]]):
         """Start an episode: with a seed, the first one of that seed; else the next.
 
         Args:
-            seed: of the episode's random draws.
+            seed: of the episode's random draws, from 0 to 2⁶⁴ − 1.
             options: "state": [q, q̇, extra] (states,) at the start, as `state().physical` has it, or a State, from which the
                 episode goes on in its middle; "target": angle [rad], whose sign a task may change in turn.
 
         Raises:
-            InputError: for an option that does not exist or does not make sense, or a seed beside a State.
+            InputError: for an option that does not exist or does not make sense, a seed that is none, or one beside a State; the
+                present episode then goes on.
         """
         batch = self.batch
         start = find_start(options, self.setup, (1, batch.plant.states))
         start.check_seed(seed)
-        super().reset(seed=seed)
+        given = one_seed(seed)
         if start.state is not None:
             self.set_state(start.state)
             batch.aim([0], start)
         else:
-            if seed is None and not self.started:
-                seed = int(self.np_random.integers(2**62))
-            batch.reset([0], [seed], start)
+            new = int(self.np_random.integers(2**62)) if given is None and not self.started else given
+            batch.reset([0], [new], start)
+            super().reset(seed=given)
             self.started = True
         if self.render_mode == "human":
             self.render()

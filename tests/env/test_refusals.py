@@ -63,6 +63,12 @@ def test_bad_arguments_give_one_clear_line(arguments: dict, words: list[str]) ->
         ({"seed": 1.5}, "whole number"),
         ({"seed": [1, "a"]}, "whole number"),
         ({"seed": [1, 2, 3]}, "3 seeds for 2 arms"),
+        ({"seed": 2**64}, "seed = 18446744073709551616; give a whole number from 0 to 2"),
+        ({"seed": 2**64 - 1}, "seed of arm 1 = 18446744073709551616"),
+        ({"seed": [4, -1]}, "seed of arm 1 = -1"),
+        ({"seed": np.array([0.0, 1.0])}, "whole number"),
+        ({"seed": [[1], [2]]}, "one for each arm"),
+        ({"seed": [True, 2]}, "seed of arm 0 = True"),
         ({"options": "abc"}, "reset_mask"),
         ({"options": {"reset_mask": [True]}}, "2 booleans"),
     ],
@@ -71,6 +77,13 @@ def test_bad_resets_of_many_arms_give_one_clear_line(arguments: dict, words: str
     envs = gym.make_vec("FlexArm/Slew-v0", 2, vectorization_mode="vector_entry_point")
     with pytest.raises(InputError, match=words):
         envs.reset(**arguments)
+
+
+@pytest.mark.parametrize("seed", [2**64, -1, 1.5, "1", True, [1]])
+def test_a_seed_that_is_none_is_refused(seed: object) -> None:
+    """It would have the draws of another."""
+    with pytest.raises(InputError, match="seed = .*; give a whole number from 0 to 2"):
+        gym.make("FlexArm/Slew-v0").unwrapped.reset(seed=seed)
 
 
 @pytest.mark.parametrize(
