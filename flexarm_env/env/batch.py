@@ -140,21 +140,39 @@ class Batch:
             start: their states and targets, where these are not the task's.
 
         Raises:
-            InputError: for a state that an arm cannot have.
+            InputError: for a state that an arm cannot have; nothing has changed then.
         """
+        own, episodes = self.seeds[arms], self.episodes[arms] + 1
+        for i, seed in enumerate(seeds or ()):
+            if seed is not None:
+                own[i], episodes[i] = np.uint64(seed), 0
+        drawn, constants = self._drawn(own, episodes)
+        states = self._placed(arms, constants, start)
+        # Whatever is refused has been refused before this line.
+        self.seeds[arms], self.episodes[arms] = own, episodes
+        if constants is not None:
+            self.constants[arms] = constants
         for i, arm in enumerate(arms):
-            seed = None if seeds is None else seeds[i]
-            if seed is None:
-                self.episodes[arm] += 1
-            else:
-                self.seeds[arm], self.episodes[arm] = np.uint64(seed % 2**64), 0
-        drawn = [self.setup.arm] * len(arms)
-        if self.setup.variation.ranges and len(arms):
-            drawn = [self.arm_of(int(arm)) for arm in arms]
-            self.constants[arms] = self._constants_of(drawn)
-        for i, arm in enumerate(arms):
-            self._start(int(arm), drawn[i], start)
+            self._start(int(arm), drawn[i], states[i])
         self.aim(arms, start)
+
+    def _drawn(self, seeds: NDArray[np.uint64], episodes: Indices) -> tuple[list[Arm], Floats | None]:
+        """Draw arms, and compute the plant's constants (arms, numbers) of each; None where all have the same."""
+        if not (self.setup.variation.ranges and len(seeds)):
+            return [self.setup.arm] * len(seeds), None
+        drawn = [self._arm_at(seed, episode) for seed, episode in zip(seeds, episodes, strict=True)]
+        return drawn, self._constants_of(drawn)
+
+    def _placed(self, arms: Sequence[int] | Indices, constants: Floats | None, start: Start) -> list[Floats | None]:
+        """Compute the plant's numbers of each arm at its given state; None for an arm at the task's start."""
+        if start.physical is None:
+            return [None] * len(arms)
+        found: list[Floats | None] = []
+        for i, arm in enumerate(arms):
+            if constants is not None:
+                self.plant.constants[:] = constants[i]
+            found.append(placed(self.plant, start.physical[arm]))
+        return found
 
     def _constants_of(self, drawn: Sequence[Arm]) -> Floats:
         """Compute the plant's constants (arms, numbers) of drawn arms.
@@ -179,14 +197,14 @@ class Batch:
             rows[at.TARGET, arm] = start.targets[arm] * (1.0 if half % 2 == 0 else -1.0)
             self.observations[arm, -1] = rows[at.TARGET, arm] / self.target_scale
 
-    def _start(self, arm: int, drawn: Arm, start: Start) -> None:
+    def _start(self, arm: int, drawn: Arm, state: Floats | None) -> None:
         setup, own = self.setup, self.own[arm]
         self.rng_keys[arm] = self._key(arm, "sensors")
         plant = self.plant
         if setup.variation.ranges:
             plant.constants[:] = self.constants[arm]
-        if start.physical is not None:
-            self.states[arm] = placed(plant, start.physical[arm])
+        if state is not None:
+            self.states[arm] = state
         else:
             if setup.variation.ranges or self.first_state is None:
                 self.first_state = self._run_up(plant)
@@ -247,13 +265,25 @@ class Batch:
 
     def arm_of(self, arm: int) -> Arm:
         """Draw the arm of the present episode again."""
-        return self.setup.variation.arm(self.setup.arm, self.draws_of(arm))
+        return self._arm_at(self.seeds[arm], self.episodes[arm])
+
+    def _arm_at(self, seed: np.uint64, episode: np.int64) -> Arm:
+        """Draw the arm of an episode of a seed."""
+        return self.setup.variation.arm(self.setup.arm, self._draws_at(seed, episode))
 
     def draws_of(self, arm: int) -> list[float]:
         """Look up the unit-interval draws of an arm's present episode, one for each range: 0 is its low end, 1 its high one."""
-        key = self._key(arm, "arm")
+        return self._draws_at(self.seeds[arm], self.episodes[arm])
+
+    def _draws_at(self, seed: np.uint64, episode: np.int64) -> list[float]:
+        key = _key_at(seed, episode, "arm")
         return [uniform(key, 0, i) for i in range(len(self.setup.variation.ranges))]
 
     def _key(self, arm: int, name: str) -> np.uint64:
         """Compute the key of an arm's draws of a name in its present episode."""
-        return np.uint64(key_of(self.seeds[arm], hash_of(name), int(self.episodes[arm])))
+        return _key_at(self.seeds[arm], self.episodes[arm], name)
+
+
+def _key_at(seed: np.uint64, episode: np.int64, name: str) -> np.uint64:
+    """Compute the key of the draws of a name in an episode of a seed."""
+    return np.uint64(key_of(seed, hash_of(name), int(episode)))

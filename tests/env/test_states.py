@@ -175,6 +175,33 @@ def test_bad_options_give_one_clear_line(options: object, words: str) -> None:
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize("id", ["FlexArm/Slew-v0", "FlexArm/Slew-Random-v0"])
+def test_a_refused_reset_changes_nothing(id: str) -> None:
+    one, many = make(id, disturb=TROUBLE), gym.make_vec(id, 3, disturb=TROUBLE, **NATIVE)
+    taken = actions(60, 3)
+    one.reset(seed=0)
+    many.reset(seed=0)
+    steps_of(one, taken[:20, 0])
+    steps_of_many(many, taken[:20])
+    before, all_before = one.state(), many.unwrapped.state()
+    lost, partly = before.physical.copy(), all_before.physical.copy()
+    lost[2] = partly[1, 2] = 1e30
+    partly[0, 0] = 1.0
+    refused = [{"options": {"state": lost}, "seed": 5}, {"options": {"state": lost}}, {"seed": -1}]
+    all_refused = [{"options": {"state": partly}, "seed": 5}, {"options": {"state": partly}}, {"seed": [1, 2, "a"]}]
+    for arguments, for_all in zip(refused, all_refused, strict=True):
+        with pytest.raises(InputError):
+            one.reset(**arguments)
+        with pytest.raises(InputError):
+            many.reset(**for_all)
+        assert one.state() == before
+        assert many.unwrapped.state() == all_before
+    expected = steps_of(one, taken[20:, 0]), one.reset(), steps_of_many(many, taken[20:]), many.reset()
+    one.set_state(before)
+    many.unwrapped.set_state(all_before)
+    assert same((steps_of(one, taken[20:, 0]), one.reset(), steps_of_many(many, taken[20:]), many.reset()), expected)
+
+
 def test_a_seed_beside_a_state_is_refused() -> None:
     env = make()
     env.reset(seed=0)
