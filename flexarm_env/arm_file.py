@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -55,9 +56,9 @@ def read_arm(kind: type[Arm], source: str | Path, known: Catalogue) -> Arm:
     """
     path = Path(source)
     shipped = shipped_arms()
-    if str(source) in shipped and not path.is_file():
+    if str(source) in shipped and not os.path.isfile(path):
         path = shipped[str(source)]
-    if not path.is_file():
+    if not os.path.isfile(path):  # pathlib's raises for a name longer than any
         raise InputError(f"no arm '{source}': neither a file nor a shipped arm{did_you_mean(str(source), shipped)}")
     table = read_toml(path)
     try:

@@ -43,7 +43,7 @@ def make_vec(id: str, num_envs: int = 1, seed: int | None = None, **arguments: A
         arguments: of FlexArmVectorEnv.
 
     Raises:
-        InputError: for an id of no environment of arms, a seed that is none, and arguments that do not exist or do not make sense.
+        InputError: for an id of no environment of arms, a seed that is none, or arguments that do not exist or make no sense.
 
     Examples:
         >>> vec = make_vec("FlexArm/Slew-v0", 8, seed=0)

@@ -17,6 +17,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.env.arguments import ArmLike, EnvArguments, check_count, find_prior, make_setup
 from flexarm_env.env.batch import Batch
 from flexarm_env.env.flexarm import spaces_of
+from flexarm_env.env.given import is_list, real_array
 from flexarm_env.env.layout import REWARD, SAMPLE_COUNT, TERMINATED
 from flexarm_env.env.seeds import seeds_of
 from flexarm_env.env.spec import plain_spec
@@ -130,7 +131,7 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
         if first is not None:
             seeds = [first + i if one is None else one for i, one in enumerate(seeds)]
         self.batch.reset(chosen, [seeds[i] for i in chosen], start)
-        if seed is not None and np.ndim(seed) == 0:
+        if seed is not None and not is_list(seed):
             super().reset(seed=seeds[0])
         self.over[chosen] = False
         self.started = True
@@ -208,17 +209,16 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
 
         Raises:
             gymnasium.error.ResetNeeded: before the first reset.
-            InputError: for actions of another shape, or that are not numbers.
+            InputError: for actions of another shape, that are not numbers, or beyond ±1e6.
         """
         if not self.started:
             raise gym.error.ResetNeeded("step before reset: call envs.reset() first")
         batch = self.batch
-        shape = np.shape(actions)
-        if shape != (self.num_envs, 1):
-            raise InputError(
-                f"actions of shape {shape}; give one number from -1 to 1 for each arm, in shape ({self.num_envs}, 1)"
-            )
-        values = np.ascontiguousarray(actions).reshape(-1)
+        given = real_array(actions)
+        if given is None or given.shape != (self.num_envs, 1):
+            what = f"actions {actions!r}" if given is None else f"actions of shape {given.shape}"
+            raise InputError(f"{what}; give one number from -1 to 1 for each arm, in shape ({self.num_envs}, 1)")
+        values = np.ascontiguousarray(given).reshape(-1)
         arm = batch.request(values if values.dtype == np.float32 else values.astype(np.float64))
         if arm >= 0:
             raise InputError(f"action of arm {arm} = {actions[arm][0]}; give numbers from -1 to 1")

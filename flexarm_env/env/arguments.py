@@ -10,6 +10,7 @@ from typing import Any, TypedDict
 import numpy as np
 
 from flexarm_env.arm import Arm
+from flexarm_env.env.given import one_number, two_numbers
 from flexarm_env.env.setup import Setup
 from flexarm_env.env.variation import Disturbance, Range, find_disturbance, find_variation
 from flexarm_env.errors import InputError, UnknownArgument, did_you_mean
@@ -77,19 +78,15 @@ def make_setup(task: str | Task, arm: ArmLike, given: EnvArguments, further: Ite
         if name not in EnvArguments.__annotations__:
             hint = did_you_mean(name, (*NAMES, *further))
             raise UnknownArgument(f"the environment got an unexpected keyword argument '{name}'{hint}")
-    rate, physical = given.get("control_rate", CONTROL_RATE), given.get("physical", False)
-    if isinstance(rate, bool) or not isinstance(rate, int | float | np.number):
-        raise InputError(f"control_rate = {rate!r}; give a number [Hz]")
+    rate = one_number("control_rate", given.get("control_rate", CONTROL_RATE), "give a number [Hz]")
+    physical = given.get("physical", False)
     if not isinstance(physical, bool | np.bool_):
         raise InputError(f"physical = {physical!r}; give True or False")
-    duration = given.get("duration")
-    if isinstance(duration, bool) or not isinstance(duration, int | float | np.number | None):
-        raise InputError(f"duration = {duration!r}; give a number [s]")
     found = find_task(task)
-    if duration is not None:
-        found = dataclasses.replace(found, duration=float(duration))
+    if given.get("duration") is not None:
+        found = dataclasses.replace(found, duration=one_number("duration", given["duration"], "give a number [s]"))
     drawn, variation = find_variation(find_arm(arm), given.get("randomise"), given.get("vary"))
-    return Setup(found, drawn, variation, find_disturbance(given.get("disturb")), float(rate), bool(physical), goals_of(given))
+    return Setup(found, drawn, variation, find_disturbance(given.get("disturb")), rate, bool(physical), goals_of(given))
 
 
 def goals_of(given: EnvArguments) -> tuple[float, float] | None:
@@ -101,10 +98,7 @@ def goals_of(given: EnvArguments) -> tuple[float, float] | None:
     goals = given.get("goals")
     if goals is None:
         return None
-    try:
-        low, high = (float(value) for value in goals)
-    except (TypeError, ValueError):
-        raise InputError(f"goals = {goals!r}; give two angles [rad], lowest and highest") from None
+    low, high = two_numbers("goals", goals, "give two angles [rad], lowest and highest")
     if not -LARGEST_GOAL <= low <= high <= LARGEST_GOAL:
         raise InputError(
             f"goals = ({low:g}, {high:g}); give the lowest first, from {-LARGEST_GOAL:.4g} to {LARGEST_GOAL:.4g} rad"
@@ -115,11 +109,15 @@ def goals_of(given: EnvArguments) -> tuple[float, float] | None:
 def find_prior(arm: ArmLike, given: EnvArguments) -> Arm:
     """Load the model of the arm for controllers: the machine's nominal values unless another one is given."""
     prior = given.get("prior")
-    return find_arm(arm if prior is None else prior)
+    return find_arm(arm) if prior is None else find_arm(prior, "prior")
 
 
-def find_arm(arm: Any) -> Arm:
+def find_arm(arm: Any, name: str = "arm") -> Arm:
     """Load an arm by its name or its file, build it from the tables of one, or pass an arm on.
+
+    Args:
+        arm: to be found.
+        name: of the argument, for the message.
 
     Raises:
         InputError: for anything else.
@@ -129,5 +127,5 @@ def find_arm(arm: Any) -> Arm:
     if isinstance(arm, Mapping):
         return Arm.from_table(arm, "given")
     if not isinstance(arm, str | Path):
-        raise InputError(f"arm = {arm!r}; give a name, the path of an arm file, or an Arm")
+        raise InputError(f"{name} = {arm!r}; give a name, the path of an arm file, or an Arm")
     return Arm.load(arm)

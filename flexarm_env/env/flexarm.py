@@ -215,8 +215,8 @@ def one_command(action: Any) -> float:
     """
     try:
         (value,) = action.tolist() if isinstance(action, np.ndarray) else action
-        value = float(value)
-    except (TypeError, ValueError):
+        value = float(value * 1.0)  # a text has a float, too, but no product
+    except (TypeError, ValueError, OverflowError):
         raise InputError(f"action {action!r}; give one number from -1 to 1, in shape (1,)") from None
     if -1.0 <= value <= 1.0:
         return value

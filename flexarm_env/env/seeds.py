@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
+from flexarm_env.env.given import is_list
 from flexarm_env.errors import InputError
 
 #: Largest seed: the draws are hashes of 64 bits.
@@ -43,7 +43,7 @@ def seeds_of(given: Any, count: int) -> list[int | None]:
     if given is None or _is_whole(given):
         first = one_seed(given)
         return [None if first is None else one_seed(first + i, f"seed of arm {i}") for i in range(count)]
-    if not isinstance(given, Sequence | np.ndarray) or isinstance(given, str | bytes) or np.ndim(given) != 1:
+    if not is_list(given):
         raise InputError(f"seed = {given!r}; give a whole number, or one for each arm")
     if len(given) != count:
         raise InputError(f"{len(given)} seeds for {count} arms; give one for each, or one number")

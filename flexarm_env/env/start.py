@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from flexarm_env.env.given import real_array
 from flexarm_env.env.setup import Setup
 from flexarm_env.env.state import State
 from flexarm_env.errors import InputError, did_you_mean
@@ -80,17 +81,14 @@ def find_start(options: Any, setup: Setup, sizes: tuple[int, int], further: Iter
 
 def _array(name: str, given: Any, shape: tuple[int, ...], meaning: str) -> Floats:
     """Make finite numbers of a shape, of which the first axis may be left out."""
-    try:
-        values = np.asarray(given, dtype=np.float64)
-        if not np.isfinite(values).all():
-            raise InputError(f"options: {name} = {given!r}; give finite numbers")
-        if values.shape not in (shape, shape[1:]):
-            raise InputError(f"options: {name} of shape {values.shape}; give one {meaning}, in shape {shape[1:]} or {shape}")
-        return np.array(np.broadcast_to(values, shape))
-    except (TypeError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"options: {name} = {given!r}; give one {meaning}, in numbers") from None
+    values = real_array(given)
+    if values is None:
+        raise InputError(f"options: {name} = {given!r}; give one {meaning}, in numbers")
+    if not np.isfinite(values).all():
+        raise InputError(f"options: {name} = {given!r}; give finite numbers")
+    if values.shape not in (shape, shape[1:]):
+        raise InputError(f"options: {name} of shape {values.shape}; give one {meaning}, in shape {shape[1:]} or {shape}")
+    return np.array(np.broadcast_to(values, shape), dtype=np.float64)
 
 
 def placed(plant: Plant, physical: Floats) -> Floats:
@@ -99,7 +97,9 @@ def placed(plant: Plant, physical: Floats) -> Floats:
     Raises:
         InputError: for a state beyond all reason, in which the arm would be lost.
     """
-    plant.place(physical)
-    if not np.abs(plant.state[Z_START:]).sum() < RUN_AWAY:
+    within_reason = np.abs(physical).max() < RUN_AWAY  # the modes lack the angle of the whole arm
+    if within_reason:
+        plant.place(physical)
+    if not (within_reason and np.abs(plant.state[Z_START:]).sum() < RUN_AWAY):
         raise InputError(f"options: state = {physical.tolist()}; no arm moves that far or that fast")
     return plant.state.copy()

@@ -7,10 +7,9 @@ import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from flexarm_env.arm import Arm
 from flexarm_env.effects import Effect
+from flexarm_env.env.given import one_number, two_numbers
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.parameters import check_bounds
 
@@ -53,8 +52,9 @@ class Disturbance:
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
-            if not (isinstance(value, int | float | np.number) and 0.0 <= value <= LARGEST_SETTING):
-                raise InputError(f"disturb: {name} = {value!r}; give a number from 0 to {LARGEST_SETTING:g}")
+            remedy = f"give a number from 0 to {LARGEST_SETTING:g}"
+            if not 0.0 <= one_number(f"disturb: {name}", value, remedy) <= LARGEST_SETTING:
+                raise InputError(f"disturb: {name} = {value!r}; {remedy}")
 
 
 def find_disturbance(given: Disturbance | Mapping[str, float] | None) -> Disturbance:
@@ -108,8 +108,9 @@ def find_variation(arm: Arm, randomise: Mapping[str, Range] | None, vary: Mappin
         arm, place = _place(arm, path)
         ranges.append((place, *_bounded(arm, place, low, high)))
     for path, share in (vary or {}).items():
-        if not (isinstance(share, int | float | np.number) and 0.0 <= share < 1.0):
-            raise InputError(f"vary: {path} = {share}; give a share from 0 to less than 1, as 0.1 for ±10 %")
+        remedy = "give a share from 0 to less than 1, as 0.1 for ±10 %"
+        if not 0.0 <= one_number(f"vary: {path}", share, remedy) < 1.0:
+            raise InputError(f"vary: {path} = {share}; {remedy}")
         arm, place = _place(arm, path)
         ends = sorted(arm.value(place) * (1.0 + sign * float(share)) for sign in (-1, 1))
         ranges.append((place, *_bounded(arm, place, *ends)))
@@ -134,10 +135,7 @@ def _check_together(arm: Arm, ranges: Sequence[tuple[str, float, float]]) -> Non
 
 
 def _pair(path: str, given: Range) -> tuple[float, float]:
-    try:
-        low, high = (float(value) for value in given)
-    except (TypeError, ValueError):
-        raise InputError(f"randomise: {path} = {given!r}; give two numbers, lowest and highest") from None
+    low, high = two_numbers(f"randomise: {path}", given, "give two numbers, lowest and highest")
     if not low <= high:
         raise InputError(f"randomise: {path} = ({low:g}, {high:g}); give the lowest value first")
     return low, high

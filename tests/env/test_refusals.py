@@ -8,6 +8,10 @@ import pytest
 
 from flexarm_env import InputError
 from flexarm_env.tasks import Task
+from flexarm_env.wrappers import Shaped
+
+#: Environments with one number an action, as they are and as policies are trained on them, and their arguments.
+WITH_ONE_NUMBER = {"FlexArm/Slew-v0": {}, "FlexArm/Slew-Shaped-v0": {"interface": {"pulse": 0.0}}}
 
 
 @pytest.mark.parametrize(
@@ -46,6 +50,24 @@ from flexarm_env.tasks import Task
         ({"duration": 0.0}, ["duration = 0.0"]),
         ({"arm": "emps"}, ["'emps'", "drive.limit", "with_values", "[A]"]),
         ({"arm": {"drive": {}}}, ["drive.", "missing"]),
+        ({"goals": "12"}, ["goals = '12'", "two angles"]),
+        ({"goals": b"\1\2"}, ["goals = b", "two angles"]),
+        ({"goals": {1: 2, 2: 3}}, ["goals = {1: 2, 2: 3}", "two angles"]),
+        ({"goals": ("1", "2")}, ["goals = '1'", "two angles"]),
+        ({"goals": (True, 2)}, ["goals = True", "two angles"]),
+        ({"goals": [[1], [1, 2]]}, ["goals = [1]", "two angles"]),
+        ({"goals": (10**400, 1)}, ["goals is beyond any float"]),
+        ({"randomise": {"payload.mass": "03"}}, ["payload.mass = '03'", "two numbers"]),
+        ({"randomise": {"payload.mass": {0.0: 1, 0.1: 2}}}, ["payload.mass = {", "two numbers"]),
+        ({"randomise": {"payload.mass": (0, 10**400)}}, ["payload.mass is beyond any float"]),
+        ({"vary": {"hub.inertia": 10**400}}, ["hub.inertia is beyond any float", "share"]),
+        ({"vary": {"hub.inertia": True}}, ["hub.inertia = True", "share"]),
+        ({"disturb": {"tap_rate": 10**400}}, ["tap_rate is beyond any float"]),
+        ({"control_rate": 10**400}, ["control_rate is beyond any float", "[Hz]"]),
+        ({"control_rate": np.complex128(200)}, ["control_rate", "[Hz]"]),
+        ({"duration": 10**400}, ["duration is beyond any float", "[s]"]),
+        ({"arm": "x" * 5000}, ["no arm 'xxx"]),
+        ({"prior": 3}, ["prior = 3"]),
     ],
 )
 def test_bad_arguments_give_one_clear_line(arguments: dict, words: list[str]) -> None:
@@ -67,7 +89,8 @@ def test_bad_arguments_give_one_clear_line(arguments: dict, words: list[str]) ->
         ({"seed": 2**64 - 1}, "seed of arm 1 = 18446744073709551616"),
         ({"seed": [4, -1]}, "seed of arm 1 = -1"),
         ({"seed": np.array([0.0, 1.0])}, "whole number"),
-        ({"seed": [[1], [2]]}, "one for each arm"),
+        ({"seed": [[1], [2, 3]]}, r"seed of arm 0 = \[1\]"),
+        ({"seed": {1: 2, 3: 4}}, "one for each arm"),
         ({"seed": [True, 2]}, "seed of arm 0 = True"),
         ({"options": "abc"}, "reset_mask"),
         ({"options": {"reset_mask": [True]}}, "2 booleans"),
@@ -82,7 +105,7 @@ def test_bad_resets_of_many_arms_give_one_clear_line(arguments: dict, words: str
 @pytest.mark.parametrize("seed", [2**64, -1, 1.5, "1", True, [1]])
 def test_a_seed_that_is_none_is_refused(seed: object) -> None:
     """It would have the draws of another."""
-    with pytest.raises(InputError, match="seed = .*; give a whole number from 0 to 2"):
+    with pytest.raises(InputError, match=r"seed = .*; give a whole number from 0 to 2\*\*64"):
         gym.make("FlexArm/Slew-v0").unwrapped.reset(seed=seed)
 
 
@@ -105,28 +128,39 @@ def test_bad_tasks_give_one_clear_line(numbers: dict, words: str) -> None:
 
 @pytest.mark.parametrize(
     "action",
-    [np.zeros(2), np.zeros((1, 1)), np.array(0.5), np.array([np.nan]), np.array([np.inf]), np.array([1e30]), None],
+    [
+        *(np.zeros(2), np.zeros((1, 1)), np.array(0.5), np.array([np.nan]), np.array([np.inf]), np.array([1e30]), None),
+        *([10**400], "1", ["1"], [1j], np.ma.masked_array([0.5], mask=[True]), [[0.5], [0.5, 1]]),
+    ],
 )
 def test_bad_actions_are_refused(action: object) -> None:
-    env = gym.make("FlexArm/Slew-v0").unwrapped
-    env.reset(seed=0)
-    with pytest.raises(InputError, match="action"):
-        env.step(action)
+    for id, arguments in WITH_ONE_NUMBER.items():
+        env = gym.make(id, disable_env_checker=True, **arguments)
+        env.reset(seed=0)
+        with pytest.raises(InputError, match="action"):
+            env.step(action)
 
 
 @pytest.mark.parametrize(
     "action",
-    [np.zeros(3), np.zeros((3, 2)), *(np.array([[0.0], [bad], [0.0]]) for bad in (np.nan, -np.inf, 1e30, np.float32(-1e30)))],
+    [
+        *(np.zeros(3), np.zeros((3, 2)), None, "abc", [["0"], ["0"], ["0"]], [[0.5], [0.5, 1], [0.5]], [[10**400], [0.0], [0.0]]),
+        *(np.zeros((3, 1), dtype=complex), np.ma.masked_array(np.zeros((3, 1)), mask=[[True], [False], [False]])),
+        *(np.array([[0.0], [bad], [0.0]]) for bad in (np.nan, -np.inf, 1e30, np.float32(-1e30))),
+    ],
 )
 def test_bad_actions_of_many_arms_are_refused(action: np.ndarray) -> None:
-    envs = gym.make_vec("FlexArm/Slew-v0", 3, vectorization_mode="vector_entry_point")
-    with pytest.raises(gym.error.ResetNeeded):
-        envs.step(np.zeros((3, 1)))
-    envs.reset(seed=0)
-    with pytest.raises(InputError, match="action"):
-        envs.step(action)
+    for id, arguments in WITH_ONE_NUMBER.items():
+        envs = gym.make_vec(id, 3, vectorization_mode="vector_entry_point", **arguments)
+        with pytest.raises(gym.error.ResetNeeded):
+            envs.step(np.zeros((3, 1)))
+        envs.reset(seed=0)
+        with pytest.raises(InputError, match="action"):
+            envs.step(action)
 
 
 def test_a_step_before_the_first_reset_is_refused() -> None:
-    with pytest.raises(gym.error.ResetNeeded, match="reset"):
-        gym.make("FlexArm/Slew-v0").unwrapped.step(np.zeros(1))
+    bare = gym.make("FlexArm/Slew-v0", physical=True).unwrapped
+    for env in (bare, Shaped(bare)):
+        with pytest.raises(gym.error.ResetNeeded, match="reset"):
+            env.step(np.zeros(1))

@@ -31,7 +31,12 @@ def test_of_seeds_that_some_arms_lack_the_others_hold() -> None:
 
 @pytest.mark.parametrize(
     ("given", "plain"),
-    [(np.int32(3), [3, 4, 5]), (np.array(3), [3, 4, 5]), (np.array([1, 2, 9]), [1, 2, 9]), (2**64 - 3, [2**64 - 3 + i for i in range(3)])],
+    [
+        (np.int32(3), [3, 4, 5]),
+        (np.array(3), [3, 4, 5]),
+        (np.array([1, 2, 9]), [1, 2, 9]),
+        (2**64 - 3, [2**64 - 3 + i for i in range(3)]),
+    ],
 )
 def test_seeds_of_numpy_are_those_of_python(given: object, plain: list[int]) -> None:
     envs, one = gym.make_vec(**MANY), gym.make("FlexArm/Slew-Random-v0").unwrapped

@@ -162,6 +162,10 @@ def test_a_target_changes_its_sign_in_turn() -> None:
         ({"state": "rest"}, "'rest'"),
         ({"state": np.full(8, np.inf)}, "finite"),
         ({"state": np.full(8, 1e200)}, "no arm moves"),
+        ({"state": 1e308 * np.eye(8)[0]}, "no arm moves"),
+        ({"target": "0.3"}, "'0.3'"),
+        ({"target": 10**400}, "in numbers"),
+        ({"target": [[0.1], [0.1, 0.2]]}, "in numbers"),
     ],
 )
 def test_bad_options_give_one_clear_line(options: object, words: str) -> None:
