@@ -71,7 +71,8 @@ class Shaped(gym.Wrapper[Floats, Floats, Floats, Floats], RecordConstructorArgs)
             Observation (features,), reward, terminated, truncated, and the info of the last sample.
 
         Raises:
-            InputError: for an action of another shape, or one that is not finite.
+            gymnasium.error.ResetNeeded: before the first reset.
+            InputError: for an action of another shape, that is not a number, or beyond ±1e6.
         """
         truncated = False
         info: dict[str, Any] = {}
@@ -82,7 +83,7 @@ class Shaped(gym.Wrapper[Floats, Floats, Floats, Floats], RecordConstructorArgs)
             truncated |= ended
             return observation[None], np.array([reward]), np.array([terminated])
 
-        features, rewards, terminated = self.shaping.step(np.asarray(action)[None], move)
+        features, rewards, terminated = self.shaping.step(action[None] if isinstance(action, np.ndarray) else [action], move)
         return features[0], float(rewards[0]), bool(terminated[0]), truncated or self.shaping.over, info
 
 

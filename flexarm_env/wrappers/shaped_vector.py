@@ -108,7 +108,7 @@ class ShapedVector(VectorWrapper):  # its type parameters came with gymnasium 1.
 
         Raises:
             gymnasium.error.ResetNeeded: before the first reset, or at the end of an episode without autoreset.
-            InputError: for actions of another shape, or that are not finite.
+            InputError: for actions of another shape, that are not numbers, or beyond ±1e6.
         """
         arms, mode = self.arms, self.arms.autoreset_mode
         if self.over.any():
@@ -132,7 +132,7 @@ class ShapedVector(VectorWrapper):  # its type parameters came with gymnasium 1.
 
         Raises:
             gymnasium.error.ResetNeeded: before the first reset.
-            InputError: for actions of another shape, or that are not finite.
+            InputError: for actions of another shape, that are not numbers, or beyond ±1e6.
         """
         arms = self.arms
 

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeVar
 
+import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.env.batch import Batch
+from flexarm_env.env.given import real_array
+from flexarm_env.env.layout import LARGEST_ACTION
 from flexarm_env.env.setup import Setup
 from flexarm_env.env.state import State
 from flexarm_env.errors import InputError
@@ -39,6 +42,7 @@ class Shaping:
     Attributes:
         steps: actions of an episode.
         step_number: actions since its start.
+        started: whether an episode has been started.
 
     Raises:
         InputError: for observations that are not physical, options that do not exist, or an arm that lacks what they need.
@@ -60,34 +64,38 @@ class Shaping:
         self.interface = PolicyInterface(options, prior, 1.0 / setup.rate)
         self.reward = None if reward is None else ShapedReward(read(RewardOptions, reward), setup, batch)
         self.count, self.repeat = batch.count, options.repeat
-        self.steps, self.step_number = max(setup.samples // options.repeat, 1), 0
+        self.steps, self.step_number, self.started = max(setup.samples // options.repeat, 1), 0, False
         self.observation_space = spaces.Box(-LARGEST_FEATURE, LARGEST_FEATURE, (self.interface.size,), np.float32)
         self.action_space = spaces.Box(-1.0, 1.0, (options.actions,), np.float32)
 
     def start(self, observations: Array, share: float = 1.0) -> NDArray[np.float32]:
         """Begin episodes from observations (arms, signals + 1), at a share of a training; return features (arms, features)."""
-        self.step_number = 0
+        self.started, self.step_number = True, 0
         self.interface.start(self.count)
         self.interface.see(observations)
         if self.reward:
             self.reward.start(share)
         return self.interface.features()
 
-    def step(self, actions: Array, move: Move) -> tuple[NDArray[np.float32], Array, Array]:
+    def step(self, actions: Array | Sequence[Array], move: Move) -> tuple[NDArray[np.float32], Array, Array]:
         """Hold actions (arms, numbers) for their samples, or until an episode ends early.
 
         Returns:
             Features (arms, features), rewards (arms,) and terminated (arms,).
 
         Raises:
-            InputError: for actions of another shape, or that are not finite.
+            gymnasium.error.ResetNeeded: before the first start.
+            InputError: for actions of another shape, that are not numbers, or beyond ±1e6.
         """
+        if not self.started:
+            raise gym.error.ResetNeeded("step before reset: call reset first")
         shape = (self.count, *self.action_space.shape)
-        if np.shape(actions) != shape or not np.isfinite(actions).all():
+        given = real_array(actions)
+        if given is None or given.shape != shape or not (np.abs(given) <= LARGEST_ACTION).all():
             raise InputError(f"actions {actions!r}; give finite numbers from -1 to 1 in shape {shape}")
         rewards = np.zeros(self.count)
         for _ in range(self.repeat):
-            observations, own, terminated = move(self.interface.send(actions))
+            observations, own, terminated = move(self.interface.send(given))
             self.interface.see(observations)
             rewards += own if self.reward is None else self.reward.sample() / self.repeat
             if terminated.any():
