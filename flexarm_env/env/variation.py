@@ -94,9 +94,10 @@ def find_variation(arm: Arm, randomise: Mapping[str, Range] | None, vary: Mappin
         vary: share by which the arm's own value may differ, as {"hub.inertia": 0.1} for ±10 %.
 
     Raises:
-        InputError: for a path that does not exist, or a range that is none or out of bounds.
+        InputError: for a path that does not exist, a range that is none or out of bounds, or a share of an effect that the arm
+            lacks.
     """
-    ranges = []
+    nominal, ranges = arm, []
     for name, table in (("randomise", randomise), ("vary", vary)):
         if not isinstance(table, Mapping | None):
             raise InputError(f"{name} = {table!r}; give a table such as {EXAMPLES[name]}")
@@ -111,8 +112,14 @@ def find_variation(arm: Arm, randomise: Mapping[str, Range] | None, vary: Mappin
         remedy = "give a share from 0 to less than 1, as 0.1 for ±10 %"
         if not 0.0 <= one_number(f"vary: {path}", share, remedy) < 1.0:
             raise InputError(f"vary: {path} = {share}; {remedy}")
-        arm, place = _place(arm, path)
-        ends = sorted(arm.value(place) * (1.0 + sign * float(share)) for sign in (-1, 1))
+        with_effect, place = _place(nominal, path)
+        if with_effect is not nominal:
+            effect = place.split(".")[1]
+            raise InputError(
+                f"vary: {path} is a share of the arm's own value, and arm '{nominal.name}' has no {effect}; give lowest and "
+                f"highest in randomise, or add the effect to the arm first"
+            )
+        ends = sorted(nominal.value(place) * (1.0 + sign * float(share)) for sign in (-1, 1))
         ranges.append((place, *_bounded(arm, place, *ends)))
     _check_together(arm, ranges)
     return arm, Variation(tuple(ranges))

@@ -6,7 +6,7 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-from flexarm_env import InputError
+from flexarm_env import Arm, InputError
 from flexarm_env.tasks import Task
 from flexarm_env.wrappers import Shaped
 
@@ -77,6 +77,18 @@ def test_bad_arguments_give_one_clear_line(arguments: dict, words: list[str]) ->
     assert "\n" not in message
     for word in words:
         assert word in message
+
+
+@pytest.mark.parametrize("drawn", [{}, {"backlash.gap": (0.01, 0.05)}, {"stribeck.extra": (0.0, 0.1)}])
+def test_a_share_of_what_the_arm_lacks_is_refused(drawn: dict) -> None:
+    """And one of what it has is that share, though another value of the effect is drawn as well."""
+    arm = Arm.load("thesis").with_effect("friction_warmup", share=0.4, time_constant=50.0)
+    for path in ("backlash.gap", "stribeck.falloff_speed"):
+        with pytest.raises(InputError, match=f"vary: {path} is a share .* 'thesis' has no {path.partition('.')[0]}; give"):
+            gym.make("FlexArm/Slew-v0", arm=arm, randomise=drawn, vary={path: 0.1})
+    drawn = {"friction_warmup.share": (0.1, 0.2)}
+    env = gym.make("FlexArm/Slew-v0", arm=arm, randomise=drawn, vary={"friction_warmup.time_constant": 0.1})
+    assert env.unwrapped.setup.variation.ranges[1] == ("effects.friction_warmup.time_constant", 45.0, pytest.approx(55.0))
 
 
 @pytest.mark.parametrize(
