@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+import sys
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -39,12 +40,14 @@ class Artefact:
         arm: modelled by its filters and its base controller.
         weights: of the acting networks, without the critic.
         run: seed, version, commit, actions, seconds, curve: [[actions, mean return of an episode], …].
+        source: file that it was read from; "" for one that was just trained.
     """
 
     plan: Plan
     arm: Arm
     weights: Mapping[str, torch.Tensor]
     run: Mapping[str, Any]
+    source: str = ""
 
     def save(self, path: Path) -> None:
         """Write the file, whole or not at all: weights as safetensors, the rest as text in its header."""
@@ -66,11 +69,11 @@ class Artefact:
                 text = file.metadata() or {}
                 weights = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
             if text.get("format") != FORMAT:
-                raise InputError(f"{path} holds no policy of format {FORMAT}; python -m agents.train makes one")
-            arm = Arm.from_table(tomllib.loads(text["arm"]), path.stem)
-            return cls(read_table(json.loads(text["plan"])), arm, weights, json.loads(text["run"]))
-        except InputError:
-            raise
+                raise InputError(f"holds no policy of format {FORMAT}; python -m agents.train makes one")
+            arm, plan = Arm.from_table(tomllib.loads(text["arm"]), path.stem), read_table(json.loads(text["plan"]))
+            return cls(plan, arm, checked_weights(weights), checked_run(json.loads(text["run"])), str(path))
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from None
         except OSError:
             raise InputError(f"{path}: cannot be read; check its permissions") from None
         except (SafetensorError, KeyError, ValueError, TypeError, AttributeError, RecursionError) as error:
@@ -87,14 +90,66 @@ class Artefact:
         """
         interface = PolicyInterface(self.plan.interface, self.arm, interval)
         policy = bare_policy(self.plan, interface.size)
+        unfit = f"{self.source}{': ' if self.source else ''}the weights do not fit the plan: "
         try:
             lacking, surplus = policy.load_state_dict(dict(self.weights), strict=False)
         except RuntimeError as error:
-            raise InputError(f"the weights do not fit the plan: {str(error).splitlines()[-1].strip()}; train again") from None
+            raise InputError(f"{unfit}{str(error).splitlines()[-1].strip()}; train again") from None
         lacking = [name for name in lacking if not name.startswith(TRAINING_ONLY)]
         if lacking or surplus:
-            raise InputError(f"the weights do not fit the plan: {', '.join([*lacking, *surplus][:3])}; train again")
+            raise InputError(f"{unfit}{', '.join([*lacking, *surplus][:3])}; train again")
         return LearnedPolicy(policy, interface)
+
+
+def checked_weights(weights: Mapping[str, torch.Tensor]) -> Mapping[str, torch.Tensor]:
+    """Pass on weights that are real and finite.
+
+    Raises:
+        InputError: for others, by the name of the first.
+    """
+    for name, value in weights.items():
+        if not (value.is_floating_point() and bool(torch.isfinite(value).all())):
+            raise InputError(f"weights '{name}' are not all finite real numbers; train again")
+    return weights
+
+
+def checked_run(run: Any) -> Mapping[str, Any]:
+    """Pass on a table of a run as Artefact has it.
+
+    Raises:
+        InputError: for another value, or an entry of another kind.
+    """
+    if not isinstance(run, Mapping):
+        raise InputError(f"run = {run!r} is no table; train again")
+    for key, holds in RUN.items():
+        if key not in run or not holds(run[key]):
+            raise InputError(f"run.{key} is missing, or of another kind than training writes; train again")
+    return run
+
+
+def _is_count(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
+
+
+def _is_curve(value: Any) -> bool:
+    return isinstance(value, list) and all(
+        isinstance(each, list) and len(each) == 2 and all(map(_is_number, each)) for each in value
+    )
+
+
+#: What a run holds, each with its test.
+RUN: dict[str, Callable[[Any], bool]] = {
+    "seed": _is_count,
+    "version": lambda value: isinstance(value, str),
+    "commit": lambda value: isinstance(value, str | None),
+    "actions": _is_count,
+    "seconds": _is_number,
+    "curve": _is_curve,
+}
 
 
 def acting_weights(policy: BasePolicy) -> dict[str, torch.Tensor]:

@@ -84,7 +84,9 @@ def read_options(section: type[Section], table: Any, prefix: str = "") -> Sectio
         InputError: for a name that does not exist, or a value that is none.
     """
     if not isinstance(table, Mapping):
-        raise InputError(f"{prefix.rstrip('.')} = {table!r} is not a table; write [{prefix.rstrip('.')}]")
+        name = prefix.rstrip(".")
+        remedy = f"write [{name}]" if name else f"give some of {', '.join(each.name for each in fields(section))} by name"  # type: ignore[arg-type]
+        raise InputError(f"{name or 'the options'} = {table!r} is not a table; {remedy}")
     known = {entry.name: entry for entry in fields(section)}  # type: ignore[arg-type]
     found = {}
     for key, value in table.items():

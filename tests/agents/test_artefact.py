@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import io
+import json
+import math
 import pickle
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +15,7 @@ import pytest
 
 pytest.importorskip("stable_baselines3")
 import torch
+from safetensors import safe_open
 from safetensors.torch import load_file, save_file
 from small_plans import silent, small
 
@@ -85,8 +89,62 @@ def test_weights_that_do_not_fit_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "a-0.safetensors"
     made = train(small(), 0, None, silent)
     replace(made, plan=replace(made.plan, network=replace(made.plan.network, layers=(9,)))).save(path)
-    with pytest.raises(InputError, match="do not fit"):
+    with pytest.raises(InputError, match=r"a-0\.safetensors: the weights do not fit the plan"):
         Artefact.load(path).agent()
     save_file(load_file(path), path)
     with pytest.raises(InputError, match="holds no policy"):
         Artefact.load(path)
+
+
+@pytest.fixture(scope="module")
+def trained() -> Artefact:
+    return train(small(), 0, None, silent)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, True, 1j])
+def test_weights_that_are_no_finite_numbers_are_refused(trained: Artefact, tmp_path: Path, value: complex) -> None:
+    path = tmp_path / "a-0.safetensors"
+    whole = dict(trained.weights)
+    name = next(iter(whole))
+    replace(trained, weights=whole | {name: torch.full(whole[name].shape, value)}).save(path)
+    with pytest.raises(InputError, match=f"a-0\\.safetensors: weights '{re.escape(name)}' are not all finite real numbers"):
+        Artefact.load(path)
+
+
+@pytest.mark.parametrize(
+    ("entry", "text", "words"),
+    [
+        ("run", "null", "run = None is no table"),
+        ("run", "[]", "run = [] is no table"),
+        ("run", "{}", "run.seed is missing"),
+        ("seed", "-1", "run.seed is missing, or of another kind"),
+        ("version", "3", "run.version"),
+        ("actions", "true", "run.actions"),
+        ("seconds", "NaN", "run.seconds"),
+        ("seconds", "1" + 400 * "0", "run.seconds"),
+        ("curve", "[[1, 2], [3]]", "run.curve"),
+        ("curve", "[[1, Infinity]]", "run.curve"),
+        ("plan", "[]", "the options = [] is not a table; give some of algorithm, task"),
+        ("plan", '{"x": 1}', "unknown key 'x'; allowed: actions"),
+        ("plan", '{"seeds": 0}', "seeds = 0"),
+        ("arm", "x = 1", "unknown key 'x'"),
+        ("format", "other", "holds no policy of format"),
+    ],
+)
+def test_a_policy_with_other_texts_is_refused_by_its_file(
+    trained: Artefact, tmp_path: Path, entry: str, text: str, words: str
+) -> None:
+    path = tmp_path / "a-0.safetensors"
+    trained.save(path)
+    with safe_open(path, "pt") as file:
+        texts = file.metadata()
+    if entry in texts:
+        texts[entry] = text
+    else:
+        texts["run"] = json.dumps(json.loads(texts["run"]) | {entry: "…"}).replace('"\\u2026"', text)
+    save_file(load_file(path), path, texts)
+    with pytest.raises(InputError) as caught:
+        Artefact.load(path)
+    assert str(caught.value).startswith(f"{path}: ")
+    assert words in str(caught.value)
+    assert str(caught.value).isprintable()
