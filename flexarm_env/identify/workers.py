@@ -16,6 +16,7 @@ from typing import Any, Literal
 
 from joblib import Parallel, delayed, parallel_config
 from joblib.externals.loky.backend import resource_tracker as loky_tracker
+from joblib.externals.loky.process_executor import TerminatedWorkerError
 from threadpoolctl import threadpool_limits
 
 from flexarm_env.errors import InputError
@@ -71,6 +72,9 @@ class Workers:
         Args:
             tasks: functions and their arguments.
             ahead: tasks that may wait in a process, as joblib writes it.
+
+        Raises:
+            InputError: where a process was killed, as by a system that is short of memory.
         """
         if self.jobs == 1:
             for function, arguments in tasks:
@@ -85,7 +89,10 @@ class Workers:
             results = Parallel(n_jobs=self.jobs, return_as="generator", pre_dispatch=ahead, **watched)(calls)
             with closing(results):
                 interrupts.close()
-                yield from results
+                try:
+                    yield from results
+                except TerminatedWorkerError:
+                    raise InputError("a worker process was killed; was there memory enough? try --jobs 1") from None
 
     @contextmanager
     def threads(self) -> Iterator[None]:

@@ -49,6 +49,13 @@ def test_a_killed_process_leaves_no_worker_and_no_shared_memory(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_killed_worker_is_one_line():
+    """And the next tasks have new workers."""
+    with pytest.raises(InputError, match=r"a worker process was killed; was there memory enough\? try --jobs 1$"):
+        list(Workers(2).map([(signal.raise_signal, (signal.SIGKILL,))] * 2))
+    assert list(Workers(2).map([(abs, (-1,)), (abs, (-2,))])) == [1, 2]
+
+
 @pytest.mark.parametrize("jobs", [0, -1, True, 1.0, "2", None])
 def test_workers_are_a_whole_number(jobs):
     with pytest.raises(InputError, match=r"jobs is .*; give a whole number from 1 up"):
