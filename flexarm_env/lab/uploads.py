@@ -16,6 +16,8 @@ from flexarm_env.terminal.inputs import read_recordings
 MOST_RECORDINGS = 12
 #: Limit on the samples of all recordings together: beyond it replays are too slow to follow a slider.
 MOST_SAMPLES = 2_000_000
+#: Of a file's name [bytes of UTF-8].
+LONGEST_NAME = 255
 
 
 def read_upload(arm: Arm, name: str, content: bytes, columns: Path | None, present: list[Recording]) -> list[Recording]:
@@ -29,20 +31,20 @@ def read_upload(arm: Arm, name: str, content: bytes, columns: Path | None, prese
         present: recordings of the session so far.
 
     Raises:
-        InputError: one line that names the file, row and column.
+        InputError: one line that names the file, row and column, or that no temporary file can be written.
     """
     file = plain_name(name)
     if len(present) >= MOST_RECORDINGS:
         raise InputError(f"{file}: {MOST_RECORDINGS} recordings are here already; remove one first")
     if len(content) > LARGEST_BODY:
         raise InputError(f"{file}: is larger than {LARGEST_BODY // 2**20} MB; cut it into shorter recordings")
-    with tempfile.TemporaryDirectory(prefix="flexarm-lab-") as folder:
-        path = Path(folder) / file
-        path.write_bytes(content)
-        try:
-            found = [replace(one, source=file) for one in read_recordings(arm, [path], columns)]
-        except InputError as error:
-            raise InputError(str(error).replace(f"{folder}/", "").replace(str(Path(folder) / ""), "")) from None
+    try:
+        with tempfile.TemporaryDirectory(prefix="flexarm-lab-") as folder:
+            path = Path(folder) / file
+            path.write_bytes(content)
+            found = [replace(one, source=file) for one in _read(arm, path, columns)]
+    except OSError as error:
+        raise InputError(f"{file}: no temporary file can be written: {error.strerror}; make room, or set TMPDIR") from None
     if len(present) + len(found) > MOST_RECORDINGS:
         raise InputError(f"{file}: has {len(found)} episodes, {MOST_RECORDINGS} recordings are the most; name some in [columns]")
     names = {one.name for one in present}
@@ -54,8 +56,16 @@ def read_upload(arm: Arm, name: str, content: bytes, columns: Path | None, prese
     return with_copies_noted([*present, *found])[len(present) :]
 
 
+def _read(arm: Arm, path: Path, columns: Path | None) -> list[Recording]:
+    """Read the recordings in a temporary file, whose folder no message names."""
+    try:
+        return read_recordings(arm, [path], columns)
+    except InputError as error:
+        raise InputError(str(error).replace(f"{path.parent}/", "").replace(str(path.parent / ""), "")) from None
+
+
 def plain_name(name: str) -> str:
-    """Strip folders and unsafe characters from a file's name."""
+    """Strip folders and unsafe characters from a file's name, and cut it to a length that file systems take."""
     last = PureWindowsPath(PurePosixPath(name).name).name
     text = "".join(c if c.isalnum() or c in "-_. ()" else "_" for c in last).strip(". ")[-80:]
-    return text or "recording.csv"
+    return text.encode()[-LONGEST_NAME:].decode(errors="ignore") or "recording.csv"

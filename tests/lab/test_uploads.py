@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import errno
+import os
+
 import numpy as np
 import pytest
 
@@ -66,6 +69,29 @@ def test_uploads_are_bounded(arm, content, monkeypatch):
         read_upload(arm, "more.csv", content, None, [])
 
 
+@pytest.mark.parametrize("name", ["\U00020000" * 76 + ".csv", "ä" * 300 + ".csv"])
+def test_a_name_longer_than_any_file_s_is_cut_in_bytes(arm, content, name):
+    (found,) = read_upload(arm, name, content, None, [])
+    assert found.source == plain_name(name)
+
+
+def test_an_upload_that_cannot_be_written_is_one_line(arm, content, monkeypatch, tmp_path):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "gone"))
+    with pytest.raises(
+        InputError, match=r"^run\.csv: no temporary file can be written: No such file .*; make room, or set TMPDIR$"
+    ):
+        read_upload(arm, "run.csv", content, None, [])
+
+    def full(path, content):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.setattr("pathlib.Path.write_bytes", full)
+    with pytest.raises(InputError, match=r"^run\.csv: no temporary file can be written: No space left"):
+        read_upload(arm, "run.csv", content, None, [])
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize(
     ("name", "plain"),
     [
@@ -74,6 +100,7 @@ def test_uploads_are_bounded(arm, content, monkeypatch):
         ("", "recording.csv"),
         ("a\nb<script>.csv", "a_b_script_.csv"),
         ("x" * 300 + ".csv", "x" * 76 + ".csv"),
+        ("\U00020000" * 76 + ".csv", "\U00020000" * 62 + ".csv"),
     ],
 )
 def test_names_are_those_of_files(name, plain):
