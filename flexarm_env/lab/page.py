@@ -12,12 +12,17 @@ from flexarm_env.lab.effects_panel import EffectsPanel
 from flexarm_env.lab.inspection_panel import InspectionPanel
 from flexarm_env.lab.results_panel import ResultsPanel
 from flexarm_env.lab.session import INSPECTING, Session
+from flexarm_env.lab.sessions import MOST_SESSIONS
 from flexarm_env.lab.style import CSS, PRIMARY
 from flexarm_env.lab.view_panel import ViewPanel
 from flexarm_env.recordings.recording import Recording
 
 #: Period [s] at which the page polls the session.
 BEAT = 0.04
+DROPPED = (
+    f"the lab keeps the sessions of {MOST_SESSIONS} tabs, and another tab took the place of this one: its recordings and its "
+    "work are gone; close some tabs, then reload this one"
+)
 
 
 class LabPage:
@@ -29,7 +34,7 @@ class LabPage:
     """
 
     def __init__(self, session: Session, demo: Callable[[], list[Recording]]) -> None:
-        self.session, self.revision = session, session.revision
+        self.session, self.revision, self.is_over = session, session.revision, False
         ui.colors(primary=PRIMARY)
         ui.add_css(CSS)
         with html.div().classes("lab"):
@@ -117,6 +122,11 @@ class LabPage:
 
     def _poll(self) -> None:
         """Show progress and results of the current work."""
+        if self.session.dropped and not self.is_over:
+            self.is_over = True
+            self.refresh()
+            self._show_status("")
+            self.show_error(DROPPED)
         self.session.poll()
         job = self.session.job
         if job is None or self.session.revision == self.revision:

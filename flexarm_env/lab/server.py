@@ -7,7 +7,6 @@ import contextlib
 import logging
 import os
 import socket
-from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -18,11 +17,10 @@ from flexarm_env.lab.guard import Guard
 from flexarm_env.lab.live import Live
 from flexarm_env.lab.page import LabPage
 from flexarm_env.lab.session import Session
+from flexarm_env.lab.sessions import MOST_SESSIONS, Sessions
 from flexarm_env.recordings.recording import Recording
 
 HOST = "127.0.0.1"
-#: Number of tabs with a stored session; beyond it the oldest is dropped.
-MOST_SESSIONS = 16
 DEMO = Path(__file__).resolve().parent.parent / "demo"
 
 
@@ -42,24 +40,22 @@ def serve(start: Callable[[], Session], recordings: Sequence[Recording], port: i
         Live(start().base, recordings)  # refuses unsuitable recordings before the server starts
     port = _free(port)
     os.environ.pop("PYTEST_CURRENT_TEST", None)  # with it NiceGUI would take a lab under test for its own
-    sessions: OrderedDict[str, Session] = OrderedDict()
+    sessions = Sessions(MOST_SESSIONS)
 
     @ui.page("/", title="FlexArm lab")
     async def lab() -> None:
         client = ui.context.client
         await client.connected()
         tab = client.tab_id or client.id
-        if tab not in sessions:
-            sessions[tab] = await run.io_bound(_started, start, recordings)
-            if len(sessions) > MOST_SESSIONS:
-                sessions.popitem(last=False)[1].stop()
+        session = sessions.get(tab) or await run.io_bound(_started, start, recordings)
         if not client.is_deleted:  # a tab that was closed meanwhile has no page to fill
-            LabPage(sessions[tab], lambda: Recording.read_all(DEMO))
+            sessions.show(tab, session, client)
+            client.on_disconnect(lambda: sessions.use(tab))
+            LabPage(session, lambda: Recording.read_all(DEMO))
 
     @app.on_shutdown
     def end() -> None:
-        for session in sessions.values():
-            session.stop()
+        sessions.stop()
 
     hosts = (f"{HOST}:{port}", f"localhost:{port}")
     app.config.quasar_config["loadingBar"] = {"skipHijack": True}  # the bar has no name for a screen reader

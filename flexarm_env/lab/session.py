@@ -47,6 +47,7 @@ class Session:
         job: the current work, or the last.
         added: whether the effects of the last diagnosis have been added.
         revision: count of messages from the current work; the page compares it to detect changes.
+        dropped: whether it made room for another tab; its page then says so.
     """
 
     base: Arm
@@ -61,6 +62,7 @@ class Session:
     job: Job | None = None
     added: bool = False
     revision: int = 0
+    dropped: bool = False
 
     def __post_init__(self) -> None:
         self.arm = self.draft = self.base
@@ -242,6 +244,11 @@ class Session:
         """Stop the current work."""
         if self.job is not None:
             self.job.stop()
+
+    def drop(self) -> None:
+        """Stop the work and let go of the recordings, to make room for another tab."""
+        self.use([])
+        self.dropped = True
 
     def _ready(self) -> list[Recording]:
         if not self.recordings:

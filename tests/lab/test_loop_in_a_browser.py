@@ -69,8 +69,8 @@ def rigid_arm_with_a_cable(path: Path, seed: int) -> None:
 class Lab:
     """`flexarm lab` as a process."""
 
-    def __init__(self, folder: Path, *arguments: str) -> None:
-        program = "from flexarm_env.cli import main; main()"
+    def __init__(self, folder: Path, *arguments: str, before: str = "") -> None:
+        program = f"{before}from flexarm_env.cli import main; main()"
         command = [sys.executable, "-c", program, "lab", "--port", "0", "--no-show", *arguments]
         environment = os.environ | {"PYTHONPATH": str(PROJECT), "PYTHONUNBUFFERED": "1"}
         self.log = (folder / "lab.log").open("w")
@@ -180,6 +180,35 @@ def test_a_drag_moves_the_model_and_a_reload_keeps_the_state(lab, folder):
         page.get_by_text("monday: 3.99 s at 100 Hz").wait_for()
         page.get_by_text(dragged).first.wait_for()
         assert errors == []
+
+
+@needs_chromium
+def test_a_tab_that_makes_room_for_another_says_so(tmp_path):
+    few = Lab(tmp_path, before="import flexarm_env.lab.server as s; s.MOST_SESSIONS = 2; ")
+    try:
+        with opened() as (page, errors):
+            page.set_default_timeout(PATIENCE)
+            page.goto(few.url)
+            page.get_by_role("button", name="Start with the demo").click()
+            shown_error(page)
+            page.get_by_role("button", name="Diagnose").click()
+            page.get_by_text(re.compile(r"Diagnosing, \d+ %")).wait_for()
+            tabs = [page.context.browser.new_page() for _ in range(3)]
+            for tab in tabs[:2]:
+                tab.goto(few.url)
+                tab.get_by_text("Drop recordings of the arm in").wait_for()
+                tab.close()
+            assert page.get_by_role("button", name="Stop").is_enabled()  # idle tabs that are closed made room
+            tabs[2].goto(few.url)
+            tabs[2].get_by_text("Drop recordings of the arm in").wait_for()
+            last = page.context.browser.new_page()
+            last.goto(few.url)
+            tabs[2].get_by_role("alert").get_by_text("another tab took the place of this one").wait_for()
+            assert page.get_by_role("button", name="Stop").is_enabled()  # nor does work that is under way
+            assert errors == []
+    finally:
+        assert few.end() == 0
+    assert "Traceback" not in (tmp_path / "lab.log").read_text()
 
 
 @needs_chromium
