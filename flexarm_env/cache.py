@@ -19,17 +19,38 @@ from flexarm_env.errors import InputError
 from flexarm_env.files import write_whole
 
 VARIABLE = "FLEXARM_CACHE"
+REMEDY = f"set {VARIABLE} to a folder that can be written, with room"
+#: Room [bytes] that the machine code of one module is given: the largest of the shipped arms' takes 20 MB.
+ROOM = 32 * 2**20
+#: Written at once to find out whether there is room [bytes].
+PIECE = 2**20
 #: Of a module, of what Python compiles of it, and of numba's indices and machine code.
 SUFFIXES = (".py", ".pyc", ".nbi", ".nbc")
 
 
-def cache_folder() -> Path:
+def cache_folder(name: str) -> Path:
     """Locate the folder of the compiled kernels: $FLEXARM_CACHE, or flexarm in the user's cache.
 
-    Where neither can be written it is a temporary one, for this process and those that it starts.
+    Where it cannot be written, or has no room for what is not compiled yet, it is a temporary one, for this process and those
+    that it starts.
+
+    Args:
+        name: of a module.
+
+    Raises:
+        InputError: where the temporary one has no room, either.
     """
     wanted = _wanted()
-    return wanted if wanted is not None and _is_writable(wanted) else _temporary(str(wanted or "the user's cache folder"))
+    if wanted is None or not _is_writable(wanted, 0):
+        return _temporary(str(wanted or "the user's cache folder"), "cannot be written")
+    if is_compiled(wanted, name) or _is_writable(wanted, ROOM):
+        return wanted
+    return _temporary(str(wanted), f"has no room for {ROOM >> 20} MB of compiled kernels")
+
+
+def is_compiled(folder: Path, name: str) -> bool:
+    """Whether there is machine code of a module."""
+    return any((folder / "__pycache__").glob(f"{name}*.nbi"))
 
 
 def _wanted() -> Path | None:
@@ -42,26 +63,29 @@ def _wanted() -> Path | None:
         return None
 
 
-def _is_writable(folder: Path) -> bool:
+def _is_writable(folder: Path, size: int) -> bool:
+    """Whether a file of a size [bytes] can be written: a quota and a limit on files are met in no other way."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return True
+        with tempfile.TemporaryFile(dir=folder, buffering=0) as file:
+            piece = os.urandom(min(size, PIECE))  # some file systems keep zeros in no room at all
+            return all(file.write(piece) == PIECE for _ in range(size // PIECE))
     except OSError:
         return False
 
 
 @lru_cache(maxsize=8)
-def _temporary(wanted: str) -> Path:
+def _temporary(wanted: str, why: str) -> Path:
     """Make a folder that only this user can read, and that is removed when this process ends."""
-    folder = Path(tempfile.mkdtemp(prefix="flexarm-"))
+    try:
+        folder = Path(tempfile.mkdtemp(prefix="flexarm-"))
+    except OSError as error:
+        raise InputError(f"{wanted} {why}, nor can a temporary folder: {error.strerror}; {REMEDY}") from None
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    if not _is_writable(folder, ROOM):
+        raise InputError(f"{wanted} {why}, and {folder.parent} has no room for them, either; {REMEDY}")
     os.environ[VARIABLE] = str(folder)  # processes that this one starts need not compile again
-    logging.getLogger(__name__).warning(
-        "%s cannot be written: what is compiled is lost with this process; set %s to a folder that can be written",
-        wanted,
-        VARIABLE,
-    )
+    logging.getLogger(__name__).warning("%s %s: what is compiled is lost with this process; %s", wanted, why, REMEDY)
     return folder
 
 

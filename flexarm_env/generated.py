@@ -46,6 +46,9 @@ def generated_module(
         depends_on: all text that the module depends on, of which its name is the hash.
         text: makes the module's source.
         notice: called where nothing compiled of the module is in the cache yet.
+
+    Raises:
+        InputError: where no folder has room for what is compiled of it.
     """
     name = f"{prefix}_{hashlib.sha256(depends_on.encode()).hexdigest()[:16]}"
     with _IMPORTING:
@@ -53,7 +56,7 @@ def generated_module(
 
 
 def _imported(name: str, text: Callable[[], str], notice: Callable[[], None] | None) -> ModuleType:
-    folder = cache.cache_folder()
+    folder = cache.cache_folder(name)
     cache.remove_damaged(folder, name)
     was_there = (folder / f"{name}.py").exists()
     try:
@@ -73,7 +76,7 @@ def _executed(folder: Path, name: str, text: Callable[[], str], notice: Callable
     path = folder / f"{name}.py"
     if not path.exists():
         write_whole(path, text())
-    if notice and not any((folder / "__pycache__").glob(f"{name}*.nbi")):
+    if notice and not cache.is_compiled(folder, name):
         notice()
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None

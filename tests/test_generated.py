@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import errno
+import io
 import os
 import random
 import subprocess
 import sys
+import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -36,7 +39,11 @@ def double(x):
 def triple(x):
     return 3 * x
 """
+#: Limits the size of files, as a quota does, where "LARGEST" is set.
 PROGRAM = f"""
+import os, resource
+largest = int(os.environ.get("LARGEST", "-1"))
+resource.setrlimit(resource.RLIMIT_FSIZE, (largest, largest))
 from flexarm_env.generated import generated_module
 notice = lambda: print("compiling")
 module = generated_module("flexarm_try", "kernels", lambda: {KERNELS!r}, notice)
@@ -107,3 +114,46 @@ def test_a_cache_that_cannot_be_written_is_replaced_for_the_run(tmp_path, home):
     assert "cannot be written" in made.stderr
     assert "set FLEXARM_CACHE to a folder that can be written" in made.stderr
     assert list(temporary.iterdir()) == [], "the temporary cache was left behind"
+
+
+def test_a_cache_without_room_is_replaced_for_the_run(tmp_path, monkeypatch, caplog):
+    wanted, temporary = tmp_path / "small", tmp_path / "temporary"
+    temporary.mkdir()
+
+    class Small(io.FileIO):
+        """A file on a disk with room for 1 MB."""
+
+        def write(self, content):
+            if self.tell() + len(content) > 2**20:
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+            return super().write(content)
+
+    whole = tempfile.TemporaryFile
+
+    def on_disk(dir, **arguments):
+        return Small(dir / "probe", "wb") if dir == wanted else whole(dir=dir, **arguments)
+
+    monkeypatch.setenv("FLEXARM_CACHE", str(wanted))
+    monkeypatch.setattr(tempfile, "tempdir", str(temporary))
+    monkeypatch.setattr(tempfile, "TemporaryFile", on_disk)
+    module = generated_module("flexarm_small", KERNELS, lambda: KERNELS)
+    assert module.double(21) == 42
+    assert temporary in Path(module.__file__).parents
+    assert f"{wanted} has no room for 32 MB of compiled kernels: what is compiled is lost" in caplog.text
+    assert "set FLEXARM_CACHE to a folder that can be written, with room" in caplog.text
+
+
+def test_without_any_room_one_line_names_the_folder_and_the_variable(tmp_path):
+    cached, temporary = tmp_path / "cache", tmp_path / "temporary"
+    temporary.mkdir()
+    with pytest.raises(subprocess.CalledProcessError) as caught:
+        run(cached, TMPDIR=str(temporary), LARGEST="130000")
+    last = caught.value.stderr.strip().splitlines()[-1]
+    assert (
+        f"InputError: {cached} has no room for 32 MB of compiled kernels, and {temporary} has no room for them, either; " in last
+    )
+    assert last.endswith("set FLEXARM_CACHE to a folder that can be written, with room")
+    assert list(temporary.iterdir()) == []
+    run(cached)
+    made = run(cached, LARGEST="130000")  # what is compiled needs no room
+    assert (made.stdout, made.stderr) == ("42 42\n", "")
