@@ -279,7 +279,7 @@ class FlexArmVectorEnv(VectorEnv[Array, Array, Array]):
 
 
 def _mode(given: str | AutoresetMode) -> AutoresetMode:
-    for mode in AutoresetMode:
+    for mode in AutoresetMode if isinstance(given, str | AutoresetMode) else ():
         if given in (mode, mode.value, mode.name):
             return mode
     raise InputError(f"autoreset_mode = {given!r}; allowed: {', '.join(mode.value for mode in AutoresetMode)}")

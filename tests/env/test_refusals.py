@@ -114,6 +114,12 @@ def test_bad_resets_of_many_arms_give_one_clear_line(arguments: dict, words: str
         envs.reset(**arguments)
 
 
+@pytest.mark.parametrize("mode", ["x", None, 3, np.array([1, 2])])
+def test_an_autoreset_mode_that_is_none_is_refused(mode: object) -> None:
+    with pytest.raises(InputError, match=r"autoreset_mode = .*; allowed: Next"):
+        gym.make_vec("FlexArm/Slew-v0", 2, vectorization_mode="vector_entry_point", autoreset_mode=mode)
+
+
 @pytest.mark.parametrize("seed", [2**64, -1, 1.5, "1", True, [1]])
 def test_a_seed_that_is_none_is_refused(seed: object) -> None:
     """It would have the draws of another."""

@@ -181,6 +181,12 @@ def test_options_of_a_reset_reach_the_arms() -> None:
         vec.reset()
 
 
+@pytest.mark.parametrize("seed", ["a", -1, 2**64 - 1, 1.5])
+def test_a_seed_that_is_none_is_refused(seed: object) -> None:
+    with pytest.raises(InputError, match=r"seed.* = .*; give a whole number"):
+        make_vec("FlexArm/Slew-v0", 2, seed=seed)
+
+
 def test_arms_are_drawn_beside_each_other(tmp_path: Path) -> None:
     pytest.importorskip("pygame")
     vec = make_vec("FlexArm/Slew-v0", 4, seed=0, render_mode="rgb_array")
