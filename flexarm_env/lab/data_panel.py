@@ -18,7 +18,10 @@ from flexarm_env.recordings.recording import Recording
 
 DEMO_ARM = "thesis-fem"
 ENVELOPE = 2**16  # [bytes], of a request's parts beside the files
-NOT_TAKEN = f"not taken: at most {MOST_RECORDINGS} files at once, of {LARGEST_BODY // 2**20} MB together; cut them shorter"
+NOT_TAKEN = (
+    f"not taken: at most {MOST_RECORDINGS} files at once, of {LARGEST_BODY // 2**20} MB together, and room for them in a "
+    "temporary file; cut them shorter, make room, or set TMPDIR"
+)
 
 
 class DataPanel:
@@ -51,7 +54,7 @@ class DataPanel:
             on_multi_upload=self._uploaded,
             on_rejected=lambda: show_error(NOT_TAKEN),
         )
-        self.upload.on("failed", lambda: show_error(NOT_TAKEN), args=[])
+        self.upload.on("failed", self._failed, args=[])
         _drop_zone(self.upload)
         self.files = html.ul().classes("files")
         ui.button("Start with the demo", on_click=self._start_demo).props("outline")
@@ -88,6 +91,10 @@ class DataPanel:
             self.upload.reset()
             if lines:
                 raise InputError(" — ".join(lines))
+
+    def _failed(self) -> None:
+        self.upload.reset()  # else the same files are sent again with the next ones
+        self.show_error(NOT_TAKEN)
 
     async def _start_demo(self) -> None:
         async with self._reading():

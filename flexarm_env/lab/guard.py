@@ -42,13 +42,26 @@ class Guard:
         headers = {key.decode("latin-1").lower(): value.decode("latin-1") for key, value in scope["headers"]}
         refused = self._refusal(scope, headers)
         if refused is None:
-            return await self.app(scope, receive, _protected(send))
+            return await self._pass_on(scope, receive, send)
         if scope["type"] == "websocket":
             return await send({"type": "websocket.close", "code": 1008, "reason": refused[1]})
-        status, words = refused
-        plain = [(b"content-type", b"text/plain; charset=utf-8"), (b"connection", b"close"), *PROTECTION]
-        await send({"type": "http.response.start", "status": status, "headers": plain})
-        await send({"type": "http.response.body", "body": words.encode()})
+        await _answer(send, *refused)
+
+    async def _pass_on(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on; answer one whose body finds no room in a temporary file."""
+        began = False
+
+        async def sending(message: MutableMapping[str, Any]) -> None:
+            nonlocal began
+            began = True
+            await send(message)
+
+        try:
+            await self.app(scope, receive, _protected(sending))
+        except OSError as error:
+            if began or scope["type"] != "http":
+                raise
+            await _answer(send, 507, f"The lab cannot keep what was sent: {error.strerror}; make room, or set TMPDIR.")
 
     def _refusal(self, scope: Scope, headers: dict[str, str]) -> tuple[int, str] | None:
         if headers.get("host", "") not in self.hosts:
@@ -63,6 +76,13 @@ class Guard:
             if int(length) > self.largest:
                 return 413, f"The lab takes at most {self.largest // 2**20} MB at once; cut the recordings or drop fewer."
         return None
+
+
+async def _answer(send: Send, status: int, words: str) -> None:
+    """Answer in plain text, and close the connection."""
+    plain = [(b"content-type", b"text/plain; charset=utf-8"), (b"connection", b"close"), *PROTECTION]
+    await send({"type": "http.response.start", "status": status, "headers": plain})
+    await send({"type": "http.response.body", "body": words.encode()})
 
 
 def _protected(send: Send) -> Send:

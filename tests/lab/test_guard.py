@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import errno
+import os
 
 import pytest
 
@@ -51,6 +53,30 @@ def test_requests(status, request_):
 def test_a_websocket_from_elsewhere_is_closed():
     assert answer(kind="websocket", origin="http://evil.example")[0]["type"] == "websocket.close"
     assert answer(kind="websocket", origin=f"http://{HOSTS[0]}")[0]["type"] != "websocket.close"
+
+
+@pytest.mark.parametrize("begun", [False, True])
+def test_a_body_without_room_is_answered(begun):
+    """Unless an answer was under way: then the fault is another one."""
+    sent: list[dict] = []
+
+    async def application(scope, receive, send) -> None:
+        if begun:
+            await send({"type": "http.response.start", "status": 200, "headers": []})
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    async def send(message) -> None:
+        sent.append(message)
+
+    headers = [(b"host", HOSTS[0].encode()), (b"content-length", b"10")]
+    work = Guard(application, HOSTS)({"type": "http", "method": "POST", "headers": headers}, None, send)
+    if begun:
+        with pytest.raises(OSError, match="No space left"):
+            asyncio.run(work)
+        return
+    asyncio.run(work)
+    assert sent[0]["status"] == 507
+    assert sent[1]["body"] == b"The lab cannot keep what was sent: No space left on device; make room, or set TMPDIR."
 
 
 @pytest.mark.parametrize("request_", [{}, {"host": "evil.example"}, {"origin": "http://evil.example"}])

@@ -249,6 +249,20 @@ def test_files_can_be_dropped_and_large_ones_are_not_taken(lab, folder):
 
 
 @needs_chromium
+def test_files_that_were_not_taken_are_not_sent_again(lab, folder):
+    with opened() as (page, _):
+        page.set_default_timeout(PATIENCE)
+        page.goto(lab.url)
+        page.route("**/upload/**", lambda route: route.fulfill(status=507))
+        upload(page, folder / "monday.csv")
+        page.get_by_role("alert").get_by_text("room for them in a temporary file").wait_for()
+        page.unroute("**/upload/**")
+        upload(page, folder / "tuesday.csv")
+        page.get_by_text("tuesday: 3.99 s at 100 Hz").wait_for()
+        assert page.get_by_text("monday: 3.99 s").count() == 0
+
+
+@needs_chromium
 def test_a_diagnosis_shows_progress_and_stops(lab, folder):
     with opened() as (page, errors):
         page.set_default_timeout(PATIENCE)
