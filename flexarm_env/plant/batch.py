@@ -7,8 +7,8 @@ from numba import njit
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Numbers, Places
 from flexarm_env.plant.control_step import control_step, drive_output
+from flexarm_env.plant.inner_product import inner_product
 from flexarm_env.plant.modes import is_stuck, record
-from flexarm_env.plant.propagate import inlined_dot
 from flexarm_env.plant.readings import measure
 from flexarm_env.plant.replay import is_lost
 from flexarm_env.plant.truth import TRUTH_ANGLE, TRUTH_DEFLECTION, TRUTH_LOST, TRUTH_SIZE, TRUTH_SPEED, TRUTH_STUCK
@@ -26,9 +26,9 @@ def write_truth(d: Numbers, n: Places, s: Numbers, out: Numbers, first: int) -> 
     size, count = 2 * n[at.BLOCKS], n[at.COORDINATES]
     rows = record(n, mode) + n[at.PHYSICAL]
     stuck = is_stuck(mode, 0)
-    out[first + TRUTH_ANGLE] = s[at.HELD_HUB] if stuck else inlined_dot(d, rows, s, at.Z_START, size)
-    out[first + TRUTH_SPEED] = 0.0 if stuck else inlined_dot(d, rows + count * size, s, at.Z_START, size)
-    deflection = inlined_dot(d, rows + n[at.TIP] * size, s, at.Z_START, size) if n[at.TIP] >= 0 else 0.0
+    out[first + TRUTH_ANGLE] = s[at.HELD_HUB] if stuck else inner_product(d, rows, s, at.Z_START, size)
+    out[first + TRUTH_SPEED] = 0.0 if stuck else inner_product(d, rows + count * size, s, at.Z_START, size)
+    deflection = inner_product(d, rows + n[at.TIP] * size, s, at.Z_START, size) if n[at.TIP] >= 0 else 0.0
     out[first + TRUTH_DEFLECTION] = deflection
     out[first + TRUTH_STUCK] = 1.0 if stuck else 0.0
     out[first + TRUTH_LOST] = 1.0 if is_lost(n, s) else 0.0

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 Numbers = NDArray[np.float64]  # (any,), contiguous, as are the others
 Samples = NDArray[np.float64]  # (samples, signals)
-Gains = NDArray[np.float64]  # (modes, 2 blocks + bodies, signals)
+Gains = NDArray[np.float64]  # (modes, signals, 2 blocks + bodies)
 Places = NDArray[np.int64]  # (any,)
 
 

@@ -45,7 +45,11 @@ from collections import namedtuple
 import numpy as np
 from numba import boolean, float64, int64, njit, uint64
 from numba.core.types import BaseTuple
+
+from flexarm_env.plant.inner_product import inner_product
 """
+#: What numba does not write itself: the generated modules import it.
+INNER_PRODUCT = Path(__file__).with_name("inner_product.py")
 #: Suffix of a bundle's name for its type in the generated module.
 TYPE = "Type"
 #: Kernels own no array: Python holds all arrays. So none needs numba's counts of references (_nrt), which are atomic, take as
@@ -214,7 +218,7 @@ def _compose(laws: tuple[Law, ...]) -> ModuleType:
 
 @lru_cache(maxsize=8)
 def _module(text: str) -> ModuleType:
-    own = Path(__file__).read_text(encoding="utf-8")
+    own = "".join(Path(file).read_text(encoding="utf-8") for file in (__file__, INNER_PRODUCT))
     return generated_module(
         "flexarm_kernel",
         f"{numba.__version__}\n{own}\n{text}",

@@ -7,7 +7,8 @@ import math
 from numba import njit
 
 from flexarm_env.plant.bundles import Line, Motion, Point, Segment
-from flexarm_env.plant.propagate import dot, inlined_dot
+from flexarm_env.plant.inner_product import inner_product
+from flexarm_env.plant.propagate import dot
 from flexarm_env.plant.trial_motion import value_at
 
 #: Shortest interval [s] that is halved.
@@ -49,7 +50,7 @@ def amplitudes(m: Motion, z: Segment, force: int, t: float, out: int) -> None:
 def derivative_bounds(m: Motion, line: Line, force: int, t: float, sizes: int) -> tuple[float, float]:
     """Bound the second and the fourth derivative of a quantity over the next t [s], from the amplitudes."""
     w, blocks = m.w, m.blocks.number
-    second = inlined_dot(m.d, line.weight, w, sizes, blocks) + abs(line.o2)
+    second = inner_product(m.d, line.weight, w, sizes, blocks) + abs(line.o2)
     if m.blocks.varying:
         for i in range(2 * blocks):
             change = abs(w[force + i + 2 * blocks]) + t * abs(w[force + i + 4 * blocks])

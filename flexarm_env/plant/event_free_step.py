@@ -8,11 +8,12 @@ from typing import NamedTuple
 from numba import njit
 
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.bundles import Arrays, Numbers
-from flexarm_env.plant.event_free_table import ORDER, PER_BLOCK, StepTable, tested_row
+from flexarm_env.plant.bundles import Arrays
+from flexarm_env.plant.event_free_table import ORDER, StepTable, tested_row
 from flexarm_env.plant.force_quartic import StepScratch, fit_quartic, step_places, variation
 from flexarm_env.plant.forces import apply_laws
 from flexarm_env.plant.friction import preslides
+from flexarm_env.plant.inner_product import inner_product
 from flexarm_env.plant.modes import GEAR_OPEN, is_stuck, record
 from flexarm_env.plant.propagate import dot
 from flexarm_env.plant.stick_slip import has_friction, load_now, remember_friction, static_budget
@@ -60,39 +61,42 @@ def write_inputs(a: Arrays, command: float, places: StepScratch) -> None:
 
 
 @njit(forceinline=True)
-def forcing_of(d: Numbers, row: int, w: Numbers, inputs: int, coupled: bool) -> float:
-    """Compute the force on one coordinate of a block, from the drivers."""
-    force = d[row + at.W_COMMAND] * w[inputs + at.W_COMMAND] + d[row + at.W_HUB] * w[inputs + at.W_HUB] + d[row + at.W_ONE]
-    if coupled:
-        force += d[row + at.W_MOTOR] * w[inputs + at.W_MOTOR] + d[row + at.W_SIDE] * w[inputs + at.W_SIDE]
-        force += d[row + at.W_HELD_HUB] * w[inputs + at.W_HELD_HUB] + d[row + at.W_HELD_MOTOR] * w[inputs + at.W_HELD_MOTOR]
-    return force
+def force_blocks(a: Arrays, places: StepScratch) -> None:
+    """Write the force on each block at the start to w, from the drivers."""
+    d, n, w, inputs, size = a.d, a.n, a.w, places.inputs, 2 * a.n[at.BLOCKS]
+    by, to = record(n, int(a.s[at.MODE])) + n[at.FORCING], places.block_forces
+    command, hub, motor = w[inputs + at.W_COMMAND], w[inputs + at.W_HUB], w[inputs + at.W_MOTOR]
+    for i in range(size):
+        force = d[by + at.W_COMMAND * size + i] * command + d[by + at.W_HUB * size + i] * hub
+        w[to + i] = force + d[by + at.W_MOTOR * size + i] * motor + d[by + at.W_ONE * size + i]
+    side, held_hub, held_motor = w[inputs + at.W_SIDE], w[inputs + at.W_HELD_HUB], w[inputs + at.W_HELD_MOTOR]
+    if side == 0.0 and held_hub == 0.0 and held_motor == 0.0:
+        return
+    for i in range(size):
+        force = d[by + at.W_SIDE * size + i] * side + d[by + at.W_HELD_HUB * size + i] * held_hub
+        w[to + i] += force + d[by + at.W_HELD_MOTOR * size + i] * held_motor
 
 
 @njit(forceinline=True)
 def move_blocks(a: Arrays, moves: bool, table: StepTable, places: StepScratch) -> None:
     """Write each block's state at the end of the step, and the bound of its chord error, to w."""
     d, n, s, w, tab = a.d, a.n, a.s, a.w, table.data
-    here, drivers, changes = record(n, int(s[at.MODE])), n[at.DRIVERS], n[at.BODIES] * ORDER
-    coupled = n[at.COUPLED] > 0
-    for k in range(n[at.BLOCKS]):
-        row = here + n[at.FORCING] + 2 * k * drivers
-        f1 = forcing_of(d, row, w, places.inputs, coupled)
-        f2 = forcing_of(d, row + drivers, w, places.inputs, coupled)
-        c0, c1 = d[here + n[at.C0] + k], d[here + n[at.C1] + k]
-        i = table.responses + PER_BLOCK * k
-        c, r, r0 = tab[i], tab[i + 1], tab[i + 2]
-        p, q = s[at.Z_START + 2 * k], s[at.Z_START + 2 * k + 1]
+    blocks, changes, here = n[at.BLOCKS], n[at.BODIES] * ORDER, record(n, int(s[at.MODE]))
+    at0, at1, forces, responses = here + n[at.C0], here + n[at.C1], places.block_forces, table.responses
+    force_blocks(a, places)
+    for k in range(blocks):
+        c0, c1 = d[at0 + k], d[at1 + k]
+        c, r, r0 = tab[responses + k], tab[responses + blocks + k], tab[responses + 2 * blocks + k]
+        f1, f2, p, q = w[forces + 2 * k], w[forces + 2 * k + 1], s[at.Z_START + 2 * k], s[at.Z_START + 2 * k + 1]
         x, y = q + f1, f2 - c0 * p - c1 * q
-        new_p = p + (r + c1 * r0) * x + r0 * y
-        new_q = c * x + r * y - f1
-        if moves:
-            end = table.ends + 2 * k * changes
-            for j in range(changes):
-                new_p += tab[end + 2 * j] * w[places.changes + j]
-                new_q += tab[end + 2 * j + 1] * w[places.changes + j]
-        w[2 * k], w[2 * k + 1] = new_p, new_q
-        w[places.bends + k] = tab[i + 3] * math.sqrt(c0 * x * x + y * y)
+        w[2 * k] = p + (r + c1 * r0) * x + r0 * y
+        w[2 * k + 1] = c * x + r * y - f1
+        w[places.bends + k] = tab[responses + 3 * blocks + k] * math.sqrt(c0 * x * x + y * y)
+    if moves:
+        for j in range(changes):
+            change, end = w[places.changes + j], table.ends + 2 * j * blocks
+            for i in range(2 * blocks):
+                w[i] += tab[end + i] * change
 
 
 @njit(forceinline=True)
@@ -100,13 +104,9 @@ def chord_of(a: Arrays, row: int, places: StepScratch) -> Chord:
     """Compute the chord of the row that is tested for a body's event, or (last) for the gears'."""
     d, s, w = a.d, a.s, a.w
     place, weight = tested_row(a.n, int(s[at.MODE]), row)
-    before, after, bend = 0.0, 0.0, 0.0
-    for k in range(a.n[at.BLOCKS]):
-        i = 2 * k
-        before += d[place + i] * s[at.Z_START + i] + d[place + i + 1] * s[at.Z_START + i + 1]
-        after += d[place + i] * w[i] + d[place + i + 1] * w[i + 1]
-        bend += d[weight + k] * w[places.bends + k]
-    return Chord(before, after, bend)
+    blocks = a.n[at.BLOCKS]
+    before, after = inner_product(d, place, s, at.Z_START, 2 * blocks), inner_product(d, place, w, 0, 2 * blocks)
+    return Chord(before, after, inner_product(d, weight, w, places.bends, blocks))
 
 
 @njit(forceinline=True)

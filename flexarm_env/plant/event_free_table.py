@@ -16,15 +16,16 @@ from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Numbers, Places
 from flexarm_env.plant.crossing import chord_error
 from flexarm_env.plant.modes import is_stuck, record
-from flexarm_env.plant.propagate import INVERSE_FACTORIALS, LONG_ARGUMENT
+from flexarm_env.plant.propagate import INVERSE_FACTORIALS
 
 #: Lobatto's nodes after the start; the change of force over a step is a polynomial of this order.
 NODES = np.array([0.5 - math.sqrt(3.0 / 28.0), 0.5, 0.5 + math.sqrt(3.0 / 28.0), 1.0])
 ORDER = 4
 #: Largest number of times that a step is halved.
 DEPTH = 3
-#: Terms of the series of a short time; numbers of a block in a table: C, S, R₀, chord error.
-TERMS = 12
+#: Terms of the series of a short time, and the |c₀| t² + |c₁| t up to which it is one.
+TERMS, LONG_ARGUMENT = 12, 0.125
+#: Numbers of a block in a table: C, S, R₀, chord error, each for all blocks.
 PER_BLOCK = 4
 
 
@@ -146,7 +147,7 @@ def tabulate_quantities(d: Numbers, n: Places, mode: int, k: int, node: int, len
     here, blocks, bodies, drivers, to = record(n, mode), n[at.BLOCKS], n[at.BODIES], n[at.DRIVERS], table.data
     size, quantities = 2 * blocks, 2 * bodies
     c0, c1 = d[here + n[at.C0] + k], d[here + n[at.C1] + k]
-    forcing = here + n[at.FORCING] + 2 * k * drivers
+    forcing = here + n[at.FORCING] + 2 * k
     c, s = to[table.work], to[table.work + 1]
     for q in range(quantities):
         place = n[at.ANGLE] + q * size if q < bodies else n[at.SPEED] + (q - bodies) * size
@@ -161,7 +162,7 @@ def tabulate_quantities(d: Numbers, n: Places, mode: int, k: int, node: int, len
         faster, slower = s, to[table.work + 2]
         by_first, by_second = u * (faster + c1 * slower) - v * c0 * slower, u * slower + v * faster
         for j in range(drivers):
-            f, g = d[forcing + j], d[forcing + drivers + j]
+            f, g = d[forcing + j * size], d[forcing + j * size + 1]
             to[table.drives + i * drivers + j] += by_first * f + by_second * g
         scale = 1.0
         for order in range(ORDER):
@@ -169,23 +170,24 @@ def tabulate_quantities(d: Numbers, n: Places, mode: int, k: int, node: int, len
             faster, slower = to[table.work + 2 + order], to[table.work + 3 + order]
             by_first, by_second = u * (faster + c1 * slower) - v * c0 * slower, u * slower + v * faster
             for body in range(bodies):
-                f, g = d[forcing + at.W_HUB + body], d[forcing + drivers + at.W_HUB + body]
+                column = forcing + (at.W_HUB + body) * size
+                f, g = d[column], d[column + 1]
                 to[table.shifts + (i * bodies + body) * ORDER + order] += scale * (by_first * f + by_second * g)
 
 
 @njit(forceinline=True)
 def tabulate_end(d: Numbers, n: Places, mode: int, k: int, length: float, table: StepTable) -> None:
     """Write the change of block k at the end of a step by each coefficient of the forces' change."""
-    here, bodies, drivers, to = record(n, mode), n[at.BODIES], n[at.DRIVERS], table.data
+    here, bodies, to = record(n, mode), n[at.BODIES], table.data
     c0, c1 = d[here + n[at.C0] + k], d[here + n[at.C1] + k]
-    forcing = here + n[at.FORCING] + 2 * k * drivers
     for body in range(bodies):
-        f, g = d[forcing + at.W_HUB + body], d[forcing + drivers + at.W_HUB + body]
+        column = here + n[at.FORCING] + (at.W_HUB + body) * 2 * n[at.BLOCKS] + 2 * k
+        f, g = d[column], d[column + 1]
         scale = 1.0
         for order in range(ORDER):
             scale *= (order + 1) / length
             faster, slower = to[table.work + 2 + order], to[table.work + 3 + order]
-            i = table.ends + 2 * ((k * bodies + body) * ORDER + order)
+            i = table.ends + (body * ORDER + order) * 2 * n[at.BLOCKS] + 2 * k
             to[i] = scale * (f * (faster + c1 * slower) + g * slower)
             to[i + 1] = scale * (g * faster - c0 * slower * f)
 
@@ -206,8 +208,8 @@ def prepare_step_table(d: Numbers, n: Places, mode: int, length: float, table: S
             long_response(c0, c1, NODES[node] * length, to, table.work)
             if n[at.VARYING]:
                 tabulate_quantities(d, n, mode, k, node, length, table)
-        i = table.responses + PER_BLOCK * k
-        to[i], to[i + 1], to[i + 2] = to[table.work], to[table.work + 1], to[table.work + 2]
-        to[i + 3] = chord_error(c0, c1, length)
+        i = table.responses + k
+        to[i], to[i + blocks] = to[table.work], to[table.work + 1]
+        to[i + 2 * blocks], to[i + 3 * blocks] = to[table.work + 2], chord_error(c0, c1, length)
         if n[at.VARYING]:
             tabulate_end(d, n, mode, k, length, table)

@@ -16,6 +16,7 @@ from flexarm_env.plant.assembly import assemble
 from flexarm_env.plant.beam import Matrix, spread_out, turned
 from flexarm_env.plant.blocks import blocks_of
 from flexarm_env.plant.event_free_table import DEPTH, table_size
+from flexarm_env.plant.force_parabola import influence_size
 from flexarm_env.plant.modal import Decompose, Mode, complete, mode_of
 from flexarm_env.plant.structure import (
     DRIVERS,
@@ -256,7 +257,7 @@ def _points(model: LinearModel, ports: frozenset[str]) -> NDArray[np.intp]:
 def _size_of_tables(n: NDArray[np.int64]) -> int:
     """Count the numbers of a mode's tables of event-free steps or, with drag, of the forces' influence."""
     if n[at.POINTS]:
-        return int(12 * (2 * n[at.BODIES] + n[at.POINTS]) * (n[at.BODIES] + n[at.POINTS]))
+        return 4 * int(getattr(influence_size, "py_func", influence_size)(n))
     levels = (DEPTH + 1 if n[at.VARYING] else 1) if n[at.VARYING] or n[at.BODIES] == 2 else 0
     return 2 * levels * int(getattr(table_size, "py_func", table_size)(n))
 
@@ -306,7 +307,7 @@ def _record(
         at.STEP_TABLES: np.zeros((*arms, _size_of_tables(n))),
         at.PHYSICAL: physical,
         at.MODAL: turned(_wide(turned(mode.modal), blocks)),
-        at.FORCING: turned(_wide(turned(mode.forcing), blocks)),
+        at.FORCING: _wide(turned(mode.forcing), blocks),
         at.FORCE_COLUMNS: _wide(turned(forces), blocks),
         at.SPEED: speed,
         at.SPEED_WEIGHT: _weights(speed, c0, c1),

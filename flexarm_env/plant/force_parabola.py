@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from numba import njit
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Blocks, Numbers, Places, Segment, SubstepScratch
 from flexarm_env.plant.forces import apply_laws, evaluate_forces, read_motion
+from flexarm_env.plant.inner_product import inner_product
 from flexarm_env.plant.modes import record
 from flexarm_env.plant.propagate import RESPONSE, advance
 
@@ -19,15 +18,16 @@ SWEEPS = 15
 def constant_forcing(a: Arrays, command: float, mode: int, force: int) -> None:
     """Write the constant part of the force on the blocks: command, constant torque, gears' side, held angles."""
     d, n, s, w = a.d, a.n, a.s, a.w
-    row = record(n, mode) + n[at.FORCING]
-    for i in range(2 * n[at.BLOCKS]):
-        total = d[row + at.W_COMMAND] * command + d[row + at.W_ONE]
-        if n[at.COUPLED]:
-            total += d[row + at.W_SIDE] * s[at.GEAR_SIDE]
-            total += d[row + at.W_HELD_HUB] * s[at.HELD_HUB] + d[row + at.W_HELD_MOTOR] * s[at.HELD_MOTOR]
-        w[force + i] = total
-        w[force + i + 2 * n[at.BLOCKS]] = w[force + i + 4 * n[at.BLOCKS]] = 0.0
-        row += n[at.DRIVERS]
+    size = 2 * n[at.BLOCKS]
+    by = record(n, mode) + n[at.FORCING]
+    for i in range(size):
+        w[force + i] = d[by + at.W_COMMAND * size + i] * command + d[by + at.W_ONE * size + i]
+        w[force + i + size] = w[force + i + 2 * size] = 0.0
+    if n[at.COUPLED]:
+        side, hub, motor = s[at.GEAR_SIDE], s[at.HELD_HUB], s[at.HELD_MOTOR]
+        for i in range(size):
+            held = d[by + at.W_HELD_HUB * size + i] * hub + d[by + at.W_HELD_MOTOR * size + i] * motor
+            w[force + i] += d[by + at.W_SIDE * size + i] * side + held
 
 
 @njit(forceinline=True)
@@ -43,58 +43,38 @@ def add_forces(d: Numbers, n: Places, mode: int, w: Numbers, coefficients: int, 
             column += size
 
 
-class Answer(NamedTuple):
-    """A quantity u p + v P of a block that a force moves, with the block's c₀ and c₁."""
-
-    u: float
-    v: float
-    c0: float
-    c1: float
-
-
-class Columns(NamedTuple):
-    """Columns in d: the place of the first, the distance from each to the next, their number."""
-
-    first: int
-    step: int
-    number: int
-
-
 @njit
-def add_influence(d: Numbers, answer: Answer, table: Segment, columns: Columns, to: Segment) -> None:
-    """Add the change of a block's quantity by forces 1, t, t²/2 along each column, at the time of the table."""
-    u, v, c0, c1 = answer.u, answer.v, answer.c0, answer.c1
-    out = to.first
-    for order in range(3):
-        i = table.first + order
-        faster, slower = table.data[i + 1], table.data[i + 2]  # S and R₀, R₀ and R₁, or R₁ and R₂
-        by_first = u * (faster + c1 * slower) - v * c0 * slower
-        by_second = u * slower + v * faster
-        for j in range(columns.number):
-            column = columns.first + j * columns.step
-            to.data[out + j] += by_first * d[column] + by_second * d[column + 1]
-        out += columns.number
+def influence_size(n: Places) -> int:
+    """Count the numbers of a table of the forces' influence, with room for one row (see force_influence)."""
+    count = n[at.BODIES] + n[at.POINTS]
+    return (n[at.BODIES] + count) * 3 * count + 2 * n[at.BLOCKS]
 
 
 @njit
 def force_influence(d: Numbers, n: Places, mode: int, table: Segment, to: Segment) -> None:
-    """Write the change of each quantity of read_motion by each force, order by order, at the time of the table."""
-    here, size = record(n, mode), 2 * n[at.BLOCKS]
+    """Write the change of each quantity of read_motion by each force, order by order, at the time of the table.
+
+    A quantity u p + v P of each block answers to a force 1, t, t²/2 on the block by a row, which is the same for all forces.
+    """
+    here, size, blocks = record(n, mode), 2 * n[at.BLOCKS], n[at.BLOCKS]
     bodies, count = n[at.BODIES], n[at.BODIES] + n[at.POINTS]
-    out = to.first
-    for i in range(2 * bodies + n[at.POINTS]):
+    out, answer = to.first, to.first + (bodies + count) * 3 * count
+    for i in range(bodies + count):
         row = here + n[at.DRAG_VELOCITY] + (i - 2 * bodies) * size
         if i < bodies:
             row = here + n[at.ANGLE] + i * size
         elif i < 2 * bodies:
             row = here + n[at.SPEED] + (i - bodies) * size
-        for j in range(3 * count):
-            to.data[out + j] = 0.0
-        for k in range(n[at.BLOCKS]):
-            answer = Answer(d[row + 2 * k], d[row + 2 * k + 1], d[here + n[at.C0] + k], d[here + n[at.C1] + k])
-            columns = Columns(here + n[at.FORCE_COLUMNS] + 2 * k, size, count)
-            add_influence(d, answer, Segment(table.data, table.first + RESPONSE * k), columns, Segment(to.data, out))
-        out += 3 * count
+        for order in range(3):
+            first = table.first + (order + 1) * blocks  # S and R₀, R₀ and R₁, or R₁ and R₂
+            for k in range(blocks):
+                faster, slower = table.data[first + k], table.data[first + blocks + k]
+                u, v, c0, c1 = d[row + 2 * k], d[row + 2 * k + 1], d[here + n[at.C0] + k], d[here + n[at.C1] + k]
+                to.data[answer + 2 * k] = u * (faster + c1 * slower) - v * c0 * slower
+                to.data[answer + 2 * k + 1] = u * slower + v * faster
+            for j in range(count):
+                to.data[out + j] = inner_product(to.data, answer, d, here + n[at.FORCE_COLUMNS] + j * size, size)
+            out += count
 
 
 @njit
@@ -135,10 +115,9 @@ def fit_forces(a: Arrays, command: float, t: float, table: Segment, shifts: Segm
         change = 0.0
         for half in range(2):
             for i in range(quantities):
-                total, row = w[free + half * quantities + i], shifts.first + (half * quantities + i) * 3 * count
-                for j in range(3 * count):
-                    total += shifts.data[row + j] * w[coefficients + j]
-                w[motion + i] = total
+                row = shifts.first + half * influence_size(n) + 3 * count * i
+                moved = inner_product(shifts.data, row, w, coefficients, 3 * count)
+                w[motion + i] = w[free + half * quantities + i] + moved
             apply_laws(a, mode, s[at.TIME] + 0.5 * (half + 1) * t, motion, new + half * count)
         for j in range(2 * count):
             change = max(change, abs(w[new + j] - w[nodes + count + j]))

@@ -15,8 +15,8 @@ from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Numbers, Places
 from flexarm_env.plant.event_free_table import NODES, ORDER, StepTable
 from flexarm_env.plant.forces import apply_laws
+from flexarm_env.plant.inner_product import inner_product
 from flexarm_env.plant.modes import record
-from flexarm_env.plant.propagate import dot, inlined_dot
 
 #: Coefficients of u to u⁴ from the values at the nodes of a quartic that is 0 at u = 0.
 COEFFICIENTS = np.ascontiguousarray(np.linalg.inv(np.power.outer(NODES, np.arange(1, 5))))
@@ -30,12 +30,14 @@ SLOW = 0.3
 class StepScratch(NamedTuple):
     """Places in w during a step without events, behind the new state at 0.
 
-    `bends`: bound of each block's chord error. `inputs`: the drivers. `start`, `forces`: motion and forces at the start.
+    `bends`: bound of each block's chord error. `block_forces`: the forces on the blocks at the start. `inputs`: the drivers.
+    `start`, `forces`: motion and forces on the bodies at the start.
     `changes`: the coefficients of the forces' change. For the fit of these: `motion` at a node, the forces there (`new`),
     their `values` at all nodes, the motion without the forces' change (`free`).
     """
 
     bends: int
+    block_forces: int
     inputs: int
     start: int
     forces: int
@@ -51,14 +53,15 @@ def step_places(n: Places) -> StepScratch:
     """Lay out the scratch of a step without events."""
     blocks, bodies = n[at.BLOCKS], n[at.BODIES]
     bends = 2 * blocks
-    inputs = bends + blocks
+    block_forces = bends + blocks
+    inputs = block_forces + 2 * blocks
     start = inputs + n[at.DRIVERS]
     forces = start + 2 * bodies
     changes = forces + bodies
     motion = changes + ORDER * bodies
     new = motion + 2 * bodies
     values = new + bodies
-    return StepScratch(bends, inputs, start, forces, changes, motion, new, values, values + ORDER * bodies)
+    return StepScratch(bends, block_forces, inputs, start, forces, changes, motion, new, values, values + ORDER * bodies)
 
 
 @njit
@@ -74,9 +77,8 @@ def move_freely(a: Arrays, table: StepTable, places: StepScratch) -> None:
     bodies, drivers, size = n[at.BODIES], n[at.DRIVERS], 2 * n[at.BLOCKS]
     holds = record(n, int(s[at.MODE])) + n[at.HOLDS_ANGLE]
     for i in range(ORDER * 2 * bodies):
-        total = inlined_dot(table.data, table.rows + i * size, s, at.Z_START, size)
-        for j in range(drivers):
-            total += table.data[table.drives + i * drivers + j] * w[places.inputs + j]
+        total = inner_product(table.data, table.rows + i * size, s, at.Z_START, size)
+        total += inner_product(table.data, table.drives + i * drivers, w, places.inputs, drivers)
         q = i % (2 * bodies)
         if q < bodies:
             total += d[holds + q] * s[at.HELD_HUB + q]
@@ -92,7 +94,7 @@ def sweep_nodes(a: Arrays, length: float, table: StepTable, places: StepScratch)
     for node in range(ORDER):
         for q in range(2 * bodies):
             i = node * 2 * bodies + q
-            moved = dot(table.data, table.shifts + i * bodies * ORDER, w, places.changes, bodies * ORDER)
+            moved = inner_product(table.data, table.shifts + i * bodies * ORDER, w, places.changes, bodies * ORDER)
             w[places.motion + q] = w[places.free + i] + moved
         apply_laws(a, mode, s[at.TIME] + NODES[node] * length, places.motion, places.new)
         for body in range(bodies):

@@ -111,11 +111,11 @@ class Plant:
             (states, states); (states,), the change by 1 Nm on the hub.
         """
         start = self.layout[at.MODES] + mode * self.layout[at.STRIDE]
-        table = np.zeros((self.blocks, RESPONSE))
+        table = np.zeros((RESPONSE, self.blocks))
         c0_at, c1_at = (int(start + self.layout[key]) for key in (at.C0, at.C1))
         self.kernel.respond(self.constants, c0_at, c1_at, self.blocks, interval, table.reshape(-1), 0)
         c0, c1 = (self.constants[place : place + self.blocks] for place in (c0_at, c1_at))
-        c, s, r0 = table[:, 0], table[:, 1], table[:, 2]
+        c, s, r0 = table[:3]
         step = np.zeros((2 * self.blocks, 2 * self.blocks))
         answer = np.zeros_like(step)
         p = np.arange(0, 2 * self.blocks, 2)
@@ -166,7 +166,7 @@ class Plant:
             commands,
             np.ascontiguousarray(intervals, dtype=float),
             readings.reshape(-1),
-            np.ascontiguousarray(gains, dtype=float),
+            np.ascontiguousarray(gains.swapaxes(1, 2), dtype=float),
             np.ascontiguousarray(measured, dtype=float),
             self.scratch,
         )

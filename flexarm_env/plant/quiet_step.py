@@ -10,7 +10,7 @@ from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Numbers, Places, Segment
 from flexarm_env.plant.crossing import chord_error
 from flexarm_env.plant.event_free_table import DEPTH, has_step_tables, prepare_step_table, tabulated_step
-from flexarm_env.plant.force_parabola import force_influence
+from flexarm_env.plant.force_parabola import force_influence, influence_size
 from flexarm_env.plant.forces import effect_torque
 from flexarm_env.plant.friction import Contact, friction_budget
 from flexarm_env.plant.modes import is_stuck, record
@@ -27,20 +27,15 @@ def prepare_quiet_step(d: Numbers, n: Places, mode: int, length: float, table: i
         row, weight = here + n[at.HOLD], here + n[at.HOLD_WEIGHT]
     for k in range(n[at.BLOCKS]):
         a, b = d[here + n[at.C0] + k], d[here + n[at.C1] + k]
-        i = table + RESPONSE * k
-        d[place + at.Q_C], d[place + at.Q_S], d[place + at.Q_R0], d[place + at.Q_S_R0] = (
-            d[i],
-            d[i + 1],
-            d[i + 2],
-            d[i + 1] + b * d[i + 2],
-        )
+        c, s, r0 = d[table + k], d[table + n[at.BLOCKS] + k], d[table + 2 * n[at.BLOCKS] + k]
+        d[place + at.Q_C], d[place + at.Q_S], d[place + at.Q_R0], d[place + at.Q_S_R0] = c, s, r0, s + b * r0
         d[place + at.Q_C0], d[place + at.Q_C1] = a, b
         d[place + at.Q_BEND] = d[weight + k] * chord_error(a, b, length)
         for half in range(2):
             d[place + at.Q_ROW + half] = d[row + 2 * k + half]
-            forcing = here + n[at.FORCING] + (2 * k + half) * n[at.DRIVERS]
-            d[place + at.Q_COMMAND + half], d[place + at.Q_HUB + half] = d[forcing + at.W_COMMAND], d[forcing + at.W_HUB]
-            d[place + at.Q_ONE + half], d[place + at.Q_HELD + half] = d[forcing + at.W_ONE], d[forcing + at.W_HELD_HUB]
+            by, size = here + n[at.FORCING] + 2 * k + half, 2 * n[at.BLOCKS]
+            d[place + at.Q_COMMAND + half], d[place + at.Q_HUB + half] = d[by + at.W_COMMAND * size], d[by + at.W_HUB * size]
+            d[place + at.Q_ONE + half], d[place + at.Q_HELD + half] = d[by + at.W_ONE * size], d[by + at.W_HELD_HUB * size]
         place += at.QUIET_SIZE
 
 
@@ -55,9 +50,8 @@ def prepare(d: Numbers, n: Places) -> None:
             respond(d, here + n[at.C0], here + n[at.C1], blocks, 0.5 * length, d, table)
             respond(d, here + n[at.C0], here + n[at.C1], blocks, length, d, table + RESPONSE * blocks)
             if n[at.VARYING] and n[at.POINTS]:
-                size = (2 * n[at.BODIES] + n[at.POINTS]) * 3 * (n[at.BODIES] + n[at.POINTS])
                 for half in range(2):
-                    place = here + n[at.STEP_TABLES] + (2 * slot + half) * size
+                    place = here + n[at.STEP_TABLES] + (2 * slot + half) * influence_size(n)
                     force_influence(d, n, mode, Segment(d, table + half * RESPONSE * blocks), Segment(d, place))
             if has_step_tables(n) and length > 0.0:
                 for level in range(DEPTH + 1 if n[at.VARYING] else 1):

@@ -7,9 +7,9 @@ from numba import njit
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Numbers, Places, Segment
 from flexarm_env.plant.forces import angle_of
+from flexarm_env.plant.inner_product import inner_product
 from flexarm_env.plant.laws import sensor_law
 from flexarm_env.plant.modes import record
-from flexarm_env.plant.propagate import inlined_dot
 
 
 @njit
@@ -31,7 +31,7 @@ def measure(d: Numbers, n: Places, s: Numbers, out: Numbers, first: int) -> None
     size = 2 * n[at.BLOCKS]
     for i in range(n[at.SIGNALS]):
         row = here + n[at.OUTPUT_DRIVERS] + i * n[at.DRIVERS]
-        total = inlined_dot(d, here + n[at.OUTPUT] + i * size, s, at.Z_START, size) + d[row + at.W_ONE]
+        total = inner_product(d, here + n[at.OUTPUT] + i * size, s, at.Z_START, size) + d[row + at.W_ONE]
         out[first + i] = total + d[row + at.W_HELD_HUB] * s[at.HELD_HUB] + d[row + at.W_HELD_MOTOR] * s[at.HELD_MOTOR]
     if n[n[at.SENSOR_LAWS]] > 0:
         apply_sensor_laws(d, n, s, out, first)

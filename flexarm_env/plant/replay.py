@@ -50,7 +50,7 @@ def place_at(d: Numbers, n: Places, s: Numbers, physical: Numbers, command: floa
 def feed_back(
     d: Numbers, n: Places, s: Numbers, gains: Gains, measured: Samples, readings: Numbers, k: int,
 ) -> None:  # fmt: skip
-    """Correct the state by gains (modes, 2 blocks + bodies, signals) times the error of each reading that was measured."""
+    """Correct the state by gains (modes, signals, 2 blocks + bodies) times the error of each reading that was measured."""
     mode = int(s[at.MODE])
     size = 2 * n[at.BLOCKS]
     for j in range(n[at.SIGNALS]):
@@ -58,10 +58,10 @@ def feed_back(
             continue
         error = measured[k, j] - readings[k * n[at.SIGNALS] + j]
         for i in range(size):
-            s[at.Z_START + i] += gains[mode, i, j] * error
+            s[at.Z_START + i] += gains[mode, j, i] * error
         for body in range(n[at.BODIES]):
             if is_stuck(mode, body):
-                s[at.HELD_HUB + body] += gains[mode, size + body, j] * error
+                s[at.HELD_HUB + body] += gains[mode, j, size + body] * error
     if preslides(n, 0):  # friction does not build up against a correction
         s[at.KNOWN_ANGLE] = angle_of(d, n, s, mode, 0, Segment(s, at.Z_START))
 

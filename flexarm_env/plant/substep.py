@@ -7,7 +7,7 @@ from numba import njit
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Arrays, Blocks, Numbers, Places, Segment, SubstepScratch
 from flexarm_env.plant.events import AGAIN, GEARS, NOTHING, Event, next_event
-from flexarm_env.plant.force_parabola import add_forces, constant_forcing, fit_forces, force_influence
+from flexarm_env.plant.force_parabola import add_forces, constant_forcing, fit_forces, force_influence, influence_size
 from flexarm_env.plant.forces import evaluate_forces
 from flexarm_env.plant.modes import GEAR_OPEN, is_stuck, record
 from flexarm_env.plant.propagate import RESPONSE, advance, dot, respond
@@ -18,12 +18,6 @@ from flexarm_env.plant.trial_motion import copy_size
 #: events (white noise at zero speed) cannot stop time.
 FIRST_BLIND_TIME = 1e-11
 UNTABULATED = -1
-
-
-@njit
-def influence_size(n: Places) -> int:
-    """Count the numbers of a table of the forces' influence (see force_influence)."""
-    return (2 * n[at.BODIES] + n[at.POINTS]) * 3 * (n[at.BODIES] + n[at.POINTS])
 
 
 @njit(forceinline=True)

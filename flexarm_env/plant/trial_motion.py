@@ -6,7 +6,7 @@ from numba import njit
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Line, Motion, Segment
-from flexarm_env.plant.propagate import LONG_ARGUMENT, RESPONSE, advance, respond, series_argument
+from flexarm_env.plant.propagate import LONGEST_SERIES, RESPONSE, advance, respond, series_argument
 
 
 @njit
@@ -37,7 +37,7 @@ def arrive(m: Motion, t: float) -> None:
     z, ahead, table = m.copy + 1, m.copy + 1 + size, m.copy + 1 + 4 * size
     step = t - w[m.copy]
     for k in range(blocks.number if step < 0.0 else 0):
-        if series_argument(d[blocks.c0 + k], d[blocks.c1 + k], step) > LONG_ARGUMENT:
+        if series_argument(d[blocks.c0 + k], d[blocks.c1 + k], step) > LONGEST_SERIES:
             start_copy(m)
             step = t
             break

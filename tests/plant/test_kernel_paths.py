@@ -10,14 +10,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numba import njit
 from plant_arms import FRICTION, law, noise, pulse, relative, thesis_plant
 from work import ends
 
 from flexarm_env import Arm
 from flexarm_env.effects import catalogue
 from flexarm_env.plant import layout as at
-from flexarm_env.plant.compose import source_of
-from flexarm_env.plant.propagate import block_response
+from flexarm_env.plant.compose import compose, source_of
+from flexarm_env.plant.inner_product import inner_product
+from flexarm_env.plant.propagate import RESPONSE
 
 ARMS = {
     "base": {},
@@ -103,20 +107,55 @@ def test_replay_may_be_cut_anywhere():
     assert np.array_equal(np.vstack(parts), whole)
 
 
+@pytest.mark.parametrize("beside", [0.0, 1e-6, 1e9])
 @pytest.mark.parametrize("damping", [-0.05, 0.0, 1e-7, 0.3, 3.0, 40.0])
 @pytest.mark.parametrize("stiffness", [0.0, 1e-8, 1e-4, 0.09, 1.0, 400.0])
-def test_response_of_a_block_solves_its_equation(stiffness, damping):
-    """Its integrals, and the composition of two steps into one."""
-    time = 0.7
-    response = getattr(block_response, "py_func", block_response)
-    c0, c1 = stiffness / time**2, damping / time
-    c, s, r0, r1, r2 = response(c0, c1, time)
+def test_response_of_a_block_solves_its_equation(stiffness, damping, beside):
+    """Its integrals, and the composition of two steps into one, however fast or slow the block beside it is."""
+    time, kernel = 0.7, compose(catalogue().laws)
+    blocks = np.array([stiffness / time**2, beside / time**2, damping / time, 0.0])
+
+    def response(time):
+        table = np.zeros(2 * RESPONSE)
+        kernel.respond(blocks, 0, 2, 2, time, table, 0)
+        return table[::2]
+
+    c0, c1 = blocks[0], blocks[2]
+    c, s, r0, r1, r2 = response(time)
     assert c + c0 * r0 == pytest.approx(1.0, rel=1e-12)
     assert s + c1 * r0 + c0 * r1 == pytest.approx(time, rel=1e-12)
     assert r0 + c1 * r1 + c0 * r2 == pytest.approx(time**2 / 2, rel=1e-12)
-    twice = response(c0, c1, 2 * time)
+    twice = response(2 * time)
     assert twice[0] == pytest.approx(c * c - c0 * s * s, abs=1e-12)
     assert twice[2] == pytest.approx(r0 + c * r0 + s * s, rel=1e-11)
+
+
+@pytest.mark.parametrize("frequency", [0.0, 1e-3, 1.0, 40.0, 3e3])
+@pytest.mark.parametrize("ratio", [0.0, 1e-6, 0.02, 0.7])
+def test_response_of_a_block_is_the_closed_form(frequency, ratio):
+    """C = Ṡ + c₁ S, S and ∫S of a damped vibration after 2 ms [rad/s], beside the fastest of the thesis's beam."""
+    time, kernel = 2e-3, compose(catalogue().laws)
+    blocks = np.array([frequency**2, 1e4**2, 2.0 * ratio * frequency, 0.0])
+    table = np.zeros(2 * RESPONSE)
+    kernel.respond(blocks, 0, 2, 2, time, table, 0)
+    decay, turned = np.exp(-ratio * frequency * time), frequency * np.sqrt(1.0 - ratio**2)
+    s = decay * time * np.sinc(turned * time / np.pi)
+    c = decay * np.cos(turned * time) + ratio * frequency * s
+    assert table[0] == pytest.approx(c, abs=2e-14)
+    assert table[2] == pytest.approx(s, rel=2e-13, abs=1e-14 * time)
+    if frequency >= 1.0:
+        assert table[4] == pytest.approx((1.0 - c) / frequency**2, rel=1e-10)
+
+
+@given(st.lists(st.tuples(*2 * (st.floats(-1e3, 1e3),)), max_size=40), st.integers(0, 3))
+def test_an_inner_product_is_that_of_python_to_the_last_bit(pairs, shift):
+    one, two = (np.array([0.0] * shift + [pair[i] for pair in pairs]) for i in (0, 1))
+    assert compiled_product(one, two, shift, len(pairs)) == inner_product(one, shift, two, shift, len(pairs))
+
+
+@njit
+def compiled_product(one, two, first, count):
+    return inner_product(one, first, two, first, count)
 
 
 SCRIPT = """

@@ -18,16 +18,17 @@ def write_force(a: Arrays, g: Tangent, p: TangentPlaces, mode: int, command: flo
     coupled = n[at.COUPLED] > 0
     side, hub, motor = v[p.start + at.GEAR_SIDE], v[p.start + at.HELD_HUB], v[p.start + at.HELD_MOTOR]
     for i in range(size):
-        row, out = here + n[at.FORCING] + i * n[at.DRIVERS], p.lanes_force + i
-        total, by_command = d[row + at.W_COMMAND] * command + d[row + at.W_ONE], d[row + at.W_COMMAND]
+        by, out = here + n[at.FORCING] + i, p.lanes_force + i
+        at_command, at_one, at_side = by + at.W_COMMAND * size, by + at.W_ONE * size, by + at.W_SIDE * size
+        at_hub, at_motor = by + at.W_HELD_HUB * size, by + at.W_HELD_MOTOR * size
+        total, by_command = d[at_command] * command + d[at_one], d[at_command]
         for x in range(lanes):
-            w[out, x] = gd[row + at.W_COMMAND, x] * command + gd[row + at.W_ONE, x] + by_command * w[p.lanes_command, x]
+            w[out, x] = gd[at_command, x] * command + gd[at_one, x] + by_command * w[p.lanes_command, x]
         if coupled:
-            by_hub, by_motor = d[row + at.W_HELD_HUB], d[row + at.W_HELD_MOTOR]
-            total += d[row + at.W_SIDE] * side + by_hub * hub + by_motor * motor
+            by_hub, by_motor = d[at_hub], d[at_motor]
+            total += d[at_side] * side + by_hub * hub + by_motor * motor
             for x in range(lanes):
-                w[out, x] += gd[row + at.W_SIDE, x] * side + gd[row + at.W_HELD_HUB, x] * hub
-                w[out, x] += gd[row + at.W_HELD_MOTOR, x] * motor
+                w[out, x] += gd[at_side, x] * side + gd[at_hub, x] * hub + gd[at_motor, x] * motor
                 w[out, x] += by_hub * gs[at.HELD_HUB, x] + by_motor * gs[at.HELD_MOTOR, x]
         v[p.phi + i] = total
     for i in range(size, (order + 1) * size):

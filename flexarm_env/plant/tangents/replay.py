@@ -11,9 +11,9 @@ from flexarm_env.plant.bundles import Arrays, Numbers, Samples, Segment
 from flexarm_env.plant.control_step import drive_output
 from flexarm_env.plant.forces import angle_of
 from flexarm_env.plant.friction import preslides
+from flexarm_env.plant.inner_product import inner_product
 from flexarm_env.plant.laws import drive_law, sensor_law
 from flexarm_env.plant.modes import is_stuck, record
-from flexarm_env.plant.propagate import inlined_dot
 from flexarm_env.plant.readings import measure
 from flexarm_env.plant.replay import feed_back, is_lost
 from flexarm_env.plant.tangents.bundles import Run, Tangent, TangentPlaces, tangent_places
@@ -30,7 +30,7 @@ def linear_readings(a: Arrays, g: Tangent, p: TangentPlaces) -> None:
     here = record(n, int(s[at.MODE]))
     for i in range(n[at.SIGNALS]):
         row = here + n[at.OUTPUT_DRIVERS] + i * n[at.DRIVERS]
-        total = inlined_dot(d, here + n[at.OUTPUT] + i * size, s, at.Z_START, size) + d[row + at.W_ONE]
+        total = inner_product(d, here + n[at.OUTPUT] + i * size, s, at.Z_START, size) + d[row + at.W_ONE]
         total += d[row + at.W_HELD_HUB] * s[at.HELD_HUB] + d[row + at.W_HELD_MOTOR] * s[at.HELD_MOTOR]
         g.v[p.readings + i] = total
 
@@ -127,14 +127,14 @@ def feed_back_lanes(a: Arrays, g: Tangent, run: Run, innovations: Numbers, k: in
         error, second = error if there > 0.0 else 0.0, second if more > 0.0 else 0.0
         out, also = k * signals + j, k * signals + other
         for i in range(size):
-            gain, further, row = there * run.gains[mode, i, j], more * run.gains[mode, i, other], (mode * size + i) * signals
+            gain, further, row = there * run.gains[mode, j, i], more * run.gains[mode, other, i], (mode * size + i) * signals
             first, last = row + j, row + other
             for x in range(lanes):
                 moved = by[first, x] * error + by[last, x] * second
                 gs[at.Z_START + i, x] += moved - gain * to[out, x] - further * to[also, x]
         for body in range(n[at.BODIES]):
             if is_stuck(mode, body):
-                gain, further = there * run.gains[mode, size + body, j], more * run.gains[mode, size + body, other]
+                gain, further = there * run.gains[mode, j, size + body], more * run.gains[mode, other, size + body]
                 for x in range(lanes):
                     gs[at.HELD_HUB + body, x] -= gain * to[out, x] + further * to[also, x]
 

@@ -6,8 +6,9 @@ from numba import njit
 
 from flexarm_env.plant import layout as at
 from flexarm_env.plant.bundles import Numbers, Places
+from flexarm_env.plant.event_free_table import LONG_ARGUMENT
 from flexarm_env.plant.modes import record
-from flexarm_env.plant.propagate import INVERSE_FACTORIALS, LONG_ARGUMENT
+from flexarm_env.plant.propagate import INVERSE_FACTORIALS
 from flexarm_env.plant.tangents.bundles import PER_RESPONSE, PER_TABLE
 
 #: Terms of the series of a short time: a derivative loses one order.

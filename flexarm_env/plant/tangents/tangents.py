@@ -52,7 +52,8 @@ class Tangents:
         arrays = kernel.Arrays(plant.constants.copy(), plant.layout, plant.state, plant.scratch)
         steady = np.zeros((int(kernel.steady_rows(plant.layout)), lanes))
         tangent = kernel.Tangent(self.constants, self._start(), np.zeros((self.rows, lanes)), np.zeros(self.numbers), steady)
-        floats = [np.ascontiguousarray(given, dtype=float) for given in (plant.delayed(commands), intervals, gains, measured)]
+        given = (plant.delayed(commands), intervals, gains.swapaxes(1, 2), measured)
+        floats = [np.ascontiguousarray(numbers, dtype=float) for numbers in given]
         run = kernel.Run(*floats, readings.reshape(-1), self._gains(gains), self.law_steps, derivatives)
         kernel.replay_with_lanes(arrays, tangent, run)
         return readings, derivatives.reshape(*readings.shape, lanes)[..., : self.count]
