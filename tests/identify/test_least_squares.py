@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from flexarm_env import Arm
 from flexarm_env.experiments.simulate import simulate
-from flexarm_env.identify.calibrate.least_squares import Ending, Goal, StepSizes, minimise, one_by_one
+from flexarm_env.identify.calibrate.least_squares import Ending, Goal, StepSizes, covariance, minimise, one_by_one
 from flexarm_env.identify.calibrate.objective import objective_at
 from flexarm_env.identify.calibrate.parameters import free_parameters
 from flexarm_env.identify.replay.dataset import prepare
@@ -75,3 +75,10 @@ def test_what_a_residual_leaves_over_noise_is_the_excess_of_its_own_weights():
     left = objective.square_over_noise(objective.residual_of(nominal))
     assert left == pytest.approx(objective.excess_factor**2)
     assert left > 2.0
+
+
+def test_two_values_that_show_only_together_keep_their_priors_apart():
+    """Their sum is known to 1e-9 of a prior, their difference as well as both priors say: half a variance each."""
+    column = np.full(100, 1e9)
+    spread = covariance(np.stack([column, column], axis=1), np.ones(100), np.array([2.0, 2.0]), block=1)
+    np.testing.assert_allclose(spread, [[2.0, -2.0], [-2.0, 2.0]], rtol=1e-4)

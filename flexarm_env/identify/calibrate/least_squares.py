@@ -265,13 +265,15 @@ def covariance(j: Floats, residual: Floats, prior: Floats, block: int) -> Floats
     """Estimate the covariance (x, x) of a fit with a residual that need not be white.
 
     Sandwich of the normal equations around the scatter of the gradient summed over blocks of `block` rows (Newey and West,
-    Econometrica 55 (1987) 703, with blocks for lags).
+    Econometrica 55 (1987) 703, with blocks for lags). All is taken along the singular directions of the Jacobian in priors: as a
+    matrix, the normal equations are singular to rounding where data fix one value 1e8 times as well as another.
     """
-    bread = np.linalg.inv(j.T @ j + np.diag(prior**-2.0))
+    scaled = j * prior
+    _, strengths, axes = np.linalg.svd(np.vstack([scaled, np.eye(len(prior))]), full_matrices=False)
     block = min(block, len(residual))
     count = len(residual) // block
-    rows = residual[: count * block, None] * j[: count * block]
+    rows = residual[: count * block, None] * (scaled[: count * block] @ axes.T)
     sums = rows.reshape(count, block, -1).sum(axis=1)
-    meat = sums.T @ sums + np.diag(prior**-2.0)
-    spread: Floats = bread @ meat @ bread
+    root = prior[:, None] * axes.T / strengths**2
+    spread: Floats = root @ (sums.T @ sums + np.eye(len(prior))) @ root.T
     return spread
