@@ -45,7 +45,7 @@ def gauss_newton(residuals: Residuals, x: Floats, prior: Floats, numbers: Refini
     """Minimise |residual(x)|² + |x / prior|² by damped Gauss–Newton steps, which each correct the Jacobian.
 
     The steps end where one promises less than chance, or gives much less than it promised. The Jacobian is then computed anew if
-    they lowered the cost enough.
+    they lowered the cost by more than chance.
 
     Args:
         residuals: whitened residuals (rows,) at some points.
@@ -61,7 +61,7 @@ def gauss_newton(residuals: Residuals, x: Floats, prior: Floats, numbers: Refini
         while keeps:
             ahead, promised = _step(residuals, here, prior, numbers)
             keeps, here = here.cost - ahead.cost > numbers.kept * promised, ahead
-        if promised < numbers.least_promise or before - here.cost < numbers.tolerance * before:
+        if promised < numbers.least_promise or before - here.cost < numbers.least_gain:
             break
     return here
 
@@ -88,8 +88,9 @@ def _step(residuals: Residuals, here: Refined, prior: Floats, numbers: Refining)
 def refine(objective: Objective, x: Floats) -> Refined:
     """Move x to the best common scale and, where the model lacks nothing, on along weakly observable directions.
 
-    A replay is rough along those directions, and a fit ends in a local minimum. One that leaves more than the corrected replay
-    before it is not the last: two more are sought from some way to either side.
+    A replay is rough along those directions, and a fit ends in a local minimum. One that is no lower than x is not the last:
+    another is sought from x itself. One that leaves more than the corrected replay before it is not, either: two more are
+    sought from some way to either side.
 
     Args:
         objective: weighted by the errors where the fit ended, at the arm's own torque noise.
@@ -102,6 +103,9 @@ def refine(objective: Objective, x: Floats) -> Refined:
     if not len(x) or objective.excess_factor > errors.close:
         return _at(objective, x, None)
     *smooth, best = ends = _descend(objective, x, process_noise.refinement)
+    if smooth and best.found.cost > _at(objective, x, None).cost:
+        best = _descend(objective, x, ())[-1]
+        ends.append(best)
     if smooth and best.error > errors.converged * min(end.error for end in smooth):
         aside = dataset.settings.refining.aside * objective.weights.prior * smooth[0].weakest_direction
         starts = (best.found.x - aside, best.found.x + aside)
