@@ -63,13 +63,13 @@ class Calibrator:
 
         Args:
             arm: where to start.
-            thorough: whether to start from the nominal constants as well.
+            thorough: whether to start from the nominal constants as well, with more feedback: constants that made up for another
+                effect, or that compensate each other, have no way back under less.
         """
-        numbers, most = self.settings.calibrating, self.settings.errors.close
-        for start in (arm, self.nominal_with_effects_of(arm))[: 1 + thorough]:
-            found = self._schedule(start, numbers.iterations).run(
-                self._noises(start, self.settings.process_noise.calibration), numbers.passes, most
-            )
+        numbers, noise, most = self.settings.calibrating, self.settings.process_noise, self.settings.errors.close
+        again = ((self.nominal_with_effects_of(arm), noise.calibration_more),) if thorough else ()
+        for start, levels in ((arm, noise.calibration), *again):
+            found = self._schedule(start, numbers.iterations).run(self._noises(start, levels), numbers.passes, most)
             if found is not None:
                 return self.restart_from_nominal(found) if thorough else found
         return None

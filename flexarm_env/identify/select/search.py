@@ -283,7 +283,7 @@ class Search:
     def _without(self, found: Model, effect: str) -> Model | None:
         """Calibrate a model without one of its effects; None where that cannot leave only noise, and the model does."""
         calibrator, arm = self.calibrator, found.arm.without_effect(effect)
-        calibration = calibrator.calibrate_rival(arm) if self._is_near(found) else calibrator.calibrate(arm)
+        calibration = calibrator.calibrate_rival(arm, thorough=True) if self._is_near(found) else calibrator.calibrate(arm)
         return None if calibration is None else judge((), calibration, calibrator.dataset)
 
     def _is_near(self, found: Model) -> bool:
