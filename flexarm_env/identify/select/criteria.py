@@ -54,7 +54,10 @@ class Criteria(Protocol):
     def leaves_room(self, found: Model) -> bool:
         """Whether a model leaves an error that a rival of one of its effects could remove."""
 
-    def replaces(self, rival: Model, now: Model, rank: Callable[[Model], float]) -> bool:
+    def is_far_off(self, best: Score) -> bool:
+        """Whether the best score of several models shows that more is missing than any of them has."""
+
+    def replaces(self, rival: Model, now: Model, measure: Measure, dataset: Dataset) -> bool:
         """Whether a rival fits so much better that it takes an effect's place."""
 
     def comes_near(self, removed: float, most: float) -> bool:
@@ -197,8 +200,17 @@ class ThresholdCriteria:
         """Whether they leave most of it."""
         return self._left > self.settings.proposing.refit_fails
 
+    def is_far_off(self, best: Score) -> bool:
+        """Whether the best error in windows shows that more is missing."""
+        return best.windows > self.settings.errors.far_off
+
     def rank(self, best: Score, measure: Measure, dataset: Dataset) -> Callable[[Model], float]:
-        """Order rivals by BIC on all of the data where the best comes near the noise, else by the held-out excess."""
+        """Order rivals by BIC on all of the data where the best comes near the noise; by forecasts where it is far off.
+
+        Between both by the held-out excess.
+        """
+        if self.is_far_off(best):
+            return lambda model: model.forecast_cost
         near = best.windows < self.settings.errors.close
         return (lambda model: model.bic(dataset)) if near else (lambda model: measure(model.score))
 
@@ -210,15 +222,17 @@ class ThresholdCriteria:
         """Whether held-out or fitted errors are above the noise."""
         return max(found.score.windows, found.fitted_score.windows) > self.settings.errors.at_noise
 
-    def replaces(self, rival: Model, now: Model, rank: Callable[[Model], float]) -> bool:
-        """Whether the rival ranks first; by a share of the excess, where the model does not come near the noise.
+    def replaces(self, rival: Model, now: Model, measure: Measure, dataset: Dataset) -> bool:
+        """Whether the rival ranks first; by more than chance, where the model does not come near the noise.
 
         There a rival of more numbers lowers the excess in windows as well: it may imitate another effect in whole runs alone.
         """
+        rank = self.rank(now.score, measure, dataset)
         if now.score.windows < self.settings.errors.close:
             return rank(rival) < rank(now)
         most, has_more = 1.0 - self.settings.selecting.least_gain, now.numbers < rival.numbers
-        return rank(rival) < most * rank(now) and (not has_more or rival.score.excess < most * now.score.excess)
+        chance = self.settings.forecast_searching.least_gain if self.is_far_off(now.score) else (1.0 - most) * rank(now)
+        return rank(rival) < rank(now) - chance and (not has_more or rival.score.excess < most * now.score.excess)
 
     def comes_near(self, removed: float, most: float) -> bool:
         """Whether it is a share of the most."""

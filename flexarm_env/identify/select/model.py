@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibration import Calibration
+from flexarm_env.identify.calibrate.forecast_fit import fit_forecasts
 from flexarm_env.identify.calibrate.parameters import FitParameters
 from flexarm_env.identify.replay.dataset import Dataset
+from flexarm_env.identify.replay.density import first_disturbances
 from flexarm_env.identify.replay.error_measure import Score, score
 
 
@@ -54,6 +57,16 @@ class Model:
         """Compute the ratio of its errors in windows to those of another, on the fitted or the held-out part, the larger one."""
         pairs = ((self.score, other.score), (self.fitted_score, other.fitted_score))
         return max(own.windows / its.windows for own, its in pairs)
+
+    @functools.cached_property
+    def forecast_cost(self) -> float:
+        """Negative log density of its forecasts of all of the data, once its values suit those.
+
+        A forecast is corrected by readings up to a fraction of a second before it, under the disturbances that make the data
+        likeliest. Where a model lacks more, it tells what happens at each moment, and no whole run has to hold.
+        """
+        dataset = self.calibration.objective.dataset.nothing_held_out()
+        return fit_forecasts(self.arm, self.calibration.parameters, dataset, first_disturbances(self.arm, dataset)).cost
 
     def bic(self, dataset: Dataset) -> float:
         """Compute the Bayesian information criterion on all of the data (Schwarz, Ann. Stat. 6 (1978) 461).

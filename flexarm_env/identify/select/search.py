@@ -335,7 +335,7 @@ class Search:
     def _accept(self, trace: Trace, models: Sequence[Model]) -> Trace:
         """Accept the best model if it removes enough; the simplest of those that remove nearly as much."""
         measure, before = self.criteria.measure([m.score for m in models]), trace.model
-        winner = self._simplest(models, measure)
+        winner = self._simplest(models, before, measure)
         if not self.criteria.is_worthwhile(before, winner, measure):
             return trace
         if trace.accepted and self.criteria.stays_inadequate(winner, before):
@@ -366,15 +366,21 @@ class Search:
             calibration = self.calibrator.polish(model.calibration)
         return judge((), calibration, self.calibrator.dataset)
 
-    def _simplest(self, models: Sequence[Model], measure: Measure) -> Model:
+    def _simplest(self, models: Sequence[Model], before: Model, measure: Measure) -> Model:
         """Choose the best model; a single effect where no companion of nearly the best adds anything worthwhile.
 
-        Far off, whole runs decide, and a flexible enough effect imitates two of them there alone: windows tell them apart.
+        Far off, forecasts choose among those that remove nearly as much as the best one: whole runs end where a hub happened to
+        stick, and a flexible enough effect imitates that.
         """
+        best = min(models, key=lambda m: measure(m.score))
+        if self.criteria.is_far_off(best.score):
+            near = [m for m in models if m is best or self._comes_near(before, m, best, measure)]
+            least_gain = self.calibrator.settings.forecast_searching.least_gain
+            return min(near, key=lambda m: m.forecast_cost + least_gain * len(m.effects))
         singles, pairs = ([m for m in models if (len(m.effects) == 1) == single] for single in (True, False))
         if not singles:
             return models[0]
-        measures: tuple[Measure, ...] = (measure, lambda s: s.excess)  # far off, one model may rest where it should move
+        measures: tuple[Measure, ...] = (measure, lambda s: s.excess)  # off the noise, one may rest where it should move
         level = self.criteria.equivalence_level(models[0].score, measure)
         near = [m for m in pairs if measure(m.score) <= level]
         worthwhile = [m for m in near if any(self.criteria.is_worthwhile(singles[0], m, by) for by in measures)]

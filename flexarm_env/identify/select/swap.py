@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from flexarm_env.identify.calibrate.calibrator import Calibrator
@@ -76,7 +75,7 @@ def compare_rivals(
     simpler = [m for m in rivals[1:] if m.numbers < own.numbers]
     best = own
     for rival in (rivals[0], *simpler[:1]):
-        if _takes_place(calibrator, criteria, rival, best, measure, rank):
+        if _takes_place(calibrator, criteria, rival, best, measure):
             best = rival
     level = criteria.equivalence_level(best.score, measure)
     alike = {m.effects[0]: m for m in (own, *rivals) if m is not best and measure(m.score) <= level}
@@ -99,13 +98,11 @@ def exchange(trace: Trace, place: int, comparison: RivalComparison) -> Trace:
     return trace.then("swap", comparison.best, with_last_score(accepted, comparison.best), tried)
 
 
-def _takes_place(
-    calibrator: Calibrator, criteria: Criteria, rival: Model, now: Model, measure: Measure, rank: Callable[[Model], float]
-) -> bool:
+def _takes_place(calibrator: Calibrator, criteria: Criteria, rival: Model, now: Model, measure: Measure) -> bool:
     """Whether a rival fits better than the effect of a model, is simpler and as good, or as good where that ran to its bound."""
     one, other, alike_to = _on_all_data(calibrator, rival, now)
     same = calibrator.settings.errors.same
-    if criteria.replaces(one, other, rank) and not is_simpler_and_as_good(other, one, alike_to, same):
+    if criteria.replaces(one, other, measure, calibrator.dataset) and not is_simpler_and_as_good(other, one, alike_to, same):
         return True
     if is_simpler_and_as_good(one, other, alike_to, same):
         return measure(one.score) <= criteria.equivalence_level(other.score, measure)
