@@ -161,6 +161,7 @@ def test_emps(measurements):
     [
         ("cu-flexible", ["flexarm_K1_6", "flexarm_k1k2_6_-3"], "flexarm_K1K2_6_-5", 81.0),
         ("cu-rigid", ["rigidarm_K1_6"], "rigidarm_K1_8", 90.0),
+        ("cu-rigid", ["rigidarm_K1_8", "rigidarm_k1k3_6"], "rigidarm_K1_6", 80.0),
     ],
 )
 def test_cu_boulder(measurements, name, fitted, untouched, least):

@@ -35,10 +35,15 @@ def compared(
     error: float | Score,
     rivals: dict[str, float | Score | None],
     equivalent: tuple[str, ...] = (),
+    gain: float = 0.0,
 ) -> swap.RivalComparison:
-    """An effect beside a limit of the command's rate, compared with rivals in its place, by the errors that they leave."""
+    """An effect beside a limit of the command's rate, compared with rivals in its place.
+
+    By the errors that they leave, and what each of the rivals gains in the log density of forecasts.
+    """
     now = model(effect, error, beside=("rate_limit",))
     fitted = {name: left and model(name, left) for name, left in rivals.items()}
+    monkeypatch.setattr(Model, "forecast_cost", property(lambda m: 0.0 if m.effects[0] == effect else -gain))
     by_calibration = {id(m.calibration): m for m in (now, *fitted.values()) if m}
     monkeypatch.setattr(swap, "fit_in_place", lambda _, without, effects, *a, **b: [fitted.get(name) for name in effects])
     monkeypatch.setattr(swap, "judge", lambda effects, calibration, dataset: by_calibration[id(calibration)])
@@ -82,8 +87,16 @@ def test_of_exact_twins_the_law_of_fewer_quantities_has_the_place_whatever_stand
     assert set(found.alike) == {"asymmetric_coulomb"}
 
 
-@pytest.mark.parametrize(("windows", "first"), [(18.0, "constant_torque"), (15.0, "cable_stiffness")])
-def test_far_off_a_rival_of_more_numbers_is_better_in_windows_too(monkeypatch, windows, first):
+@pytest.mark.parametrize(
+    ("windows", "gain", "first"),
+    [
+        (18.0, 900.0, "constant_torque"),
+        (15.0, 900.0, "cable_stiffness"),
+        (15.0, 5.0, "constant_torque"),
+        (15.0, -900.0, "constant_torque"),
+    ],
+)
+def test_far_off_a_rival_of_more_numbers_is_better_in_forecasts_and_in_windows(monkeypatch, windows, gain, first):
     """A cable imitates a constant torque in whole runs: a student's arm, whose errors in windows differ by 1 %."""
-    found = compared(monkeypatch, "constant_torque", Score(18.2, 71.1), {"cable_stiffness": Score(windows, 61.3)})
-    assert found.effect == first
+    rivals = {"cable_stiffness": Score(windows, 61.3)}
+    assert compared(monkeypatch, "constant_torque", Score(18.2, 71.1), rivals, gain=gain).effect == first

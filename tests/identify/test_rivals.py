@@ -71,3 +71,14 @@ def test_no_rival_of_more_numbers_is_calibrated_again_beside_a_model_that_leaves
 @pytest.mark.parametrize("errors", [{"cable_stiffness": 1.020, "end_stop": 1.021}, {"cable_stiffness": 1.001, "end_stop": 1.000}])
 def test_beside_a_simpler_rival_or_one_that_could_leave_less_every_model_is_calibrated_again(monkeypatch, errors) -> None:
     named(monkeypatch, errors, errors, calibrated=2)
+
+
+@pytest.mark.parametrize(("cost", "names"), [(1005.0, ("cable_stiffness", "end_stop")), (1007.0, ("cable_stiffness",))])
+def test_far_off_rivals_are_those_whose_forecasts_are_as_likely(cost, names) -> None:
+    winner, other, settings = model("cable_stiffness", 9.0), model("end_stop", 8.0), Settings()
+    vars(winner)["forecast_cost"], vars(other)["forecast_cost"] = 1000.0, cost
+    before = model("cable_stiffness", 40.0)
+    criteria = ThresholdCriteria(before.score, before.score, True, settings)
+    calibrator = SimpleNamespace(settings=settings)
+    found = rivals.find_rivals(calibrator, criteria, before, winner, [other, winner], lambda score: score.excess)
+    assert tuple(m.effects[0] for m in found.models) == names

@@ -277,13 +277,27 @@ def test_rivals_are_compared_far_off_only_where_most_is_explained(left, compares
     assert far_off().criteria.can_compare_rivals(scored(left)) == compares
 
 
-@pytest.mark.parametrize(("windows", "named"), [(9.7, ("coulomb", "constant_torque")), (14.0, ("end_stop",))])
-def test_two_effects_come_before_one_that_imitates_them_in_whole_runs_alone(windows, named):
-    """A stop with four numbers halts an arm where friction does, and is no nearer in windows."""
-    pair = scored(Score(windows, 14.8), "coulomb", "constant_torque")
-    models = [scored(Score(14.6, 14.7), "end_stop"), pair, scored(Score(22.6, 60.0), "coulomb")]
-    search = far_off()
-    assert search._simplest(models, search.criteria.measure([m.score for m in models])).effects == named
+@pytest.mark.parametrize(
+    ("costs", "named"),
+    [
+        ((38_800.0, 29_100.0, 32_200.0, 60_000.0), ("coulomb", "constant_torque")),
+        ((28_000.0, 29_100.0, 32_200.0, 60_000.0), ("end_stop",)),
+        ((38_800.0, 29_100.0, 29_105.0, 60_000.0), ("coulomb",)),
+        ((38_800.0, 29_100.0, 32_200.0, 20_000.0), ("coulomb", "constant_torque")),
+    ],
+)
+def test_far_off_forecasts_choose_among_those_that_remove_most(costs, named):
+    """A stop halts an arm where friction does; an offset of a sensor leaves most of the error, whatever it makes likely."""
+    models = [
+        scored(Score(14.6, 14.7), "end_stop"),
+        scored(Score(9.7, 14.8), "coulomb", "constant_torque"),
+        scored(Score(22.6, 60.0), "coulomb"),
+        scored(Score(61.0, 800.0), "sensor_offset"),
+    ]
+    for one, cost in zip(models, costs, strict=True):
+        vars(one)["forecast_cost"] = cost
+    search, before = far_off(), scored(Score(70.0, 900.0))
+    assert search._simplest(models, before, search.criteria.measure([m.score for m in models])).effects == named
 
 
 @pytest.mark.parametrize(("whole_run", "verdict"), [(60.0, "effects"), (258.0, "effects"), (470.0, "unknown")])
