@@ -88,7 +88,7 @@ def _step(residuals: Residuals, here: Refined, prior: Floats, numbers: Refining)
 def refine(objective: Objective, x: Floats) -> Refined:
     """Move x to the best common scale and, where the model lacks nothing, on along weakly observable directions.
 
-    A replay is rough along those directions, and a fit ends in a local minimum. One that is no lower than x is not the last:
+    A replay is rough along those directions, and a fit ends in a local minimum. One that is higher than x is not the last:
     another is sought from x itself. One that leaves more than the corrected replay before it is not, either: two more are
     sought from some way to either side.
 

@@ -374,9 +374,10 @@ class Search:
         """
         best = min(models, key=lambda m: measure(m.score))
         if self.criteria.is_far_off(best.score):
-            near = [m for m in models if m is best or self._comes_near(before, m, best, measure)]
+            worthwhile = [m for m in models if self.criteria.is_worthwhile(before, m, measure)]
+            near = [m for m in worthwhile if self._comes_near(before, m, best, measure)]
             least_gain = self.calibrator.settings.forecast_searching.least_gain
-            return min(near, key=lambda m: m.forecast_cost + least_gain * len(m.effects))
+            return min(near, key=lambda m: m.forecast_cost + least_gain * len(m.effects), default=best)
         singles, pairs = ([m for m in models if (len(m.effects) == 1) == single] for single in (True, False))
         if not singles:
             return models[0]
