@@ -54,8 +54,8 @@ class Criteria(Protocol):
     def leaves_room(self, found: Model) -> bool:
         """Whether a model leaves an error that a rival of one of its effects could remove."""
 
-    def is_far_off(self, best: Score) -> bool:
-        """Whether the best score of several models shows that more is missing than any of them has."""
+    def ranks_by_forecasts(self, best: Score) -> bool:
+        """Whether models, the best of which has this score, are ordered by the density of their forecasts."""
 
     def replaces(self, rival: Model, now: Model, measure: Measure, dataset: Dataset) -> bool:
         """Whether a rival fits so much better that it takes an effect's place."""
@@ -200,16 +200,16 @@ class ThresholdCriteria:
         """Whether they leave most of it."""
         return self._left > self.settings.proposing.refit_fails
 
-    def is_far_off(self, best: Score) -> bool:
-        """Whether the best error in windows shows that more is missing."""
-        return best.windows > self.settings.errors.far_off
+    def ranks_by_forecasts(self, best: Score) -> bool:
+        """Whether whole runs say little: the best model is far off, or torque noise is stated, which forecasts pay for."""
+        return best.windows > self.settings.errors.far_off or not self.judges_free_run
 
     def rank(self, best: Score, measure: Measure, dataset: Dataset) -> Callable[[Model], float]:
-        """Order rivals by BIC on all of the data where the best comes near the noise; by forecasts where it is far off.
+        """Order rivals by forecasts where whole runs say little; else by BIC on all of the data where the best comes near the noise.
 
         Between both by the held-out excess.
         """
-        if self.is_far_off(best):
+        if self.ranks_by_forecasts(best):
             return lambda model: model.forecast_cost
         near = best.windows < self.settings.errors.close
         return (lambda model: model.bic(dataset)) if near else (lambda model: measure(model.score))
@@ -230,8 +230,9 @@ class ThresholdCriteria:
         rank = self.rank(now.score, measure, dataset)
         if now.score.windows < self.settings.errors.close:
             return rank(rival) < rank(now)
-        most, has_more = 1.0 - self.settings.selecting.least_gain, now.numbers < rival.numbers
-        chance = self.settings.forecast_searching.least_gain if self.is_far_off(now.score) else (1.0 - most) * rank(now)
+        share, has_more = self.settings.selecting.least_gain, now.numbers < rival.numbers
+        most, by_forecasts = 1.0 - share, self.ranks_by_forecasts(now.score)
+        chance = self.settings.forecast_searching.least_gain if by_forecasts else share * rank(now)
         return rank(rival) < rank(now) - chance and (not has_more or rival.score.excess < most * now.score.excess)
 
     def comes_near(self, removed: float, most: float) -> bool:

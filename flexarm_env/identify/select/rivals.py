@@ -37,8 +37,8 @@ def find_rivals(
     A calibration that began with biased constants leaves more than the difference between near rivals, and so does one that
     ended where constants compensate each other: each is calibrated by both schedules, and ranked by what it then leaves.
     A winner that leaves only noise needs none of that beside rivals of more numbers: none can stand before it. Where no time is
-    left for another calibration, all near rivals are taken as undecided. Of models that are far off, forecasts tell more than
-    any calibration does: rivals are those whose forecasts are as likely.
+    left for another calibration, all near rivals are taken as undecided. Where whole runs say little, rivals are those whose
+    forecasts are as likely.
 
     Args:
         calibrator: of the recordings.
@@ -48,7 +48,7 @@ def find_rivals(
         models: of as many effects, the winner among them.
         measure: of the error.
     """
-    if criteria.is_far_off(winner.score):
+    if criteria.ranks_by_forecasts(winner.score):
         most = winner.forecast_cost + calibrator.settings.forecast_searching.least_gain
         rest = sorted([m for m in models if m is not winner], key=lambda m: measure(m.score))
         return Rivals((winner, *(m for m in rest if m.forecast_cost <= most)), measure)

@@ -369,23 +369,27 @@ class Search:
     def _simplest(self, models: Sequence[Model], before: Model, measure: Measure) -> Model:
         """Choose the best model; a single effect where no companion of nearly the best adds anything worthwhile.
 
-        Far off, forecasts choose among those that remove nearly as much as the best one: whole runs end where a hub happened to
-        stick, and a flexible enough effect imitates that.
+        Where whole runs say little, forecasts choose among those that remove nearly as much as the best one: a run ends where a
+        hub happened to stick, and a flexible enough effect imitates that.
         """
         best = min(models, key=lambda m: measure(m.score))
-        if self.criteria.is_far_off(best.score):
+        by_forecasts = self.criteria.ranks_by_forecasts(best.score)
+        if by_forecasts:
             worthwhile = [m for m in models if self.criteria.is_worthwhile(before, m, measure)]
-            near = [m for m in worthwhile if self._comes_near(before, m, best, measure)]
-            least_gain = self.calibrator.settings.forecast_searching.least_gain
-            return min(near, key=lambda m: m.forecast_cost + least_gain * len(m.effects), default=best)
+            near = [m for m in worthwhile if self._comes_near(before, m, best, measure)] or [best]
+            models = sorted(near, key=lambda m: m.forecast_cost)
         singles, pairs = ([m for m in models if (len(m.effects) == 1) == single] for single in (True, False))
         if not singles:
             return models[0]
+        if by_forecasts:
+            least_gain = self.calibrator.settings.forecast_searching.least_gain
+            better = [m for m in pairs if m.forecast_cost < singles[0].forecast_cost - least_gain]
+        else:
+            level = self.criteria.equivalence_level(models[0].score, measure)
+            better = [m for m in pairs if measure(m.score) <= level]
         measures: tuple[Measure, ...] = (measure, lambda s: s.excess)  # off the noise, one may rest where it should move
-        level = self.criteria.equivalence_level(models[0].score, measure)
-        near = [m for m in pairs if measure(m.score) <= level]
-        worthwhile = [m for m in near if any(self.criteria.is_worthwhile(singles[0], m, by) for by in measures)]
-        return worthwhile[0] if worthwhile else singles[0]
+        chosen = [m for m in better if any(self.criteria.is_worthwhile(singles[0], m, by) for by in measures)]
+        return chosen[0] if chosen else singles[0]
 
 
 def _gains_of_screening(trials: Sequence[Trial]) -> list[Tried]:
