@@ -205,7 +205,7 @@ class ThresholdCriteria:
         return best.windows > self.settings.errors.far_off or not self.judges_free_run
 
     def rank(self, best: Score, measure: Measure, dataset: Dataset) -> Callable[[Model], float]:
-        """Order rivals by forecasts where whole runs say little; else by the held-out excess, or BIC on all data near the noise."""
+        """Order rivals by forecasts where whole runs say little; else by the held-out excess, or by BIC near the noise."""
         if self.ranks_by_forecasts(best):
             return lambda model: model.forecast_cost
         near = best.windows < self.settings.errors.close
