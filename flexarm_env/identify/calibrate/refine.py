@@ -61,7 +61,7 @@ def gauss_newton(residuals: Residuals, x: Floats, prior: Floats, numbers: Refini
         while keeps:
             ahead, promised = _step(residuals, here, prior, numbers)
             keeps, here = here.cost - ahead.cost > numbers.kept * promised, ahead
-        if promised < numbers.least_promise or before - here.cost < numbers.least_gain:
+        if promised < numbers.least_promise or before - here.cost < numbers.least_decrease:
             break
     return here
 

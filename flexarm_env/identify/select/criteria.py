@@ -229,7 +229,7 @@ class ThresholdCriteria:
             return rank(rival) < rank(now)
         share, has_more = self.settings.selecting.least_gain, now.numbers < rival.numbers
         most, by_forecasts = 1.0 - share, self.ranks_by_forecasts(now.score)
-        chance = self.settings.forecast_searching.least_gain if by_forecasts else share * rank(now)
+        chance = self.settings.forecast_searching.least_log_gain if by_forecasts else share * rank(now)
         return rank(rival) < rank(now) - chance and (not has_more or rival.score.excess < most * now.score.excess)
 
     def comes_near(self, removed: float, most: float) -> bool:

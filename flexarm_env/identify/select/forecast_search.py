@@ -125,7 +125,7 @@ class ForecastSearch:
                 level = self._finish(fresh, min(_fitted_cost(one) for one in level))
                 known |= fresh | {frozenset(one.effects): one for one in level}
                 chosen = min(level, key=lambda one: one.cost, default=None)
-                if chosen is None or chosen.cost > best - self.numbers.least_gain:
+                if chosen is None or chosen.cost > best - self.numbers.least_log_gain:
                     break
                 if calibrated == frozenset(chosen.effects):
                     continue

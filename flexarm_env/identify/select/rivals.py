@@ -49,7 +49,7 @@ def find_rivals(
         measure: of the error.
     """
     if criteria.ranks_by_forecasts(winner.score):
-        most = winner.forecast_cost + calibrator.settings.forecast_searching.least_gain
+        most = winner.forecast_cost + calibrator.settings.forecast_searching.least_log_gain
         rest = sorted([m for m in models if m is not winner], key=lambda m: measure(m.score))
         return Rivals((winner, *(m for m in rest if m.forecast_cost <= most)), measure)
     left = measure(winner.score)

@@ -382,8 +382,8 @@ class Search:
         if not singles:
             return models[0]
         if by_forecasts:
-            least_gain = self.calibrator.settings.forecast_searching.least_gain
-            better = [m for m in pairs if m.forecast_cost < singles[0].forecast_cost - least_gain]
+            most = singles[0].forecast_cost - self.calibrator.settings.forecast_searching.least_log_gain
+            better = [m for m in pairs if m.forecast_cost < most]
         else:
             level = self.criteria.equivalence_level(models[0].score, measure)
             better = [m for m in pairs if measure(m.score) <= level]

@@ -109,7 +109,7 @@ class Refining:
 
     difference: float = tuned(1e-5, "Step of the differences.", INERTIAS_OF_NULLS)
     iterations: int = tuned(5, "Jacobians at each level at most.", "no sweep recorded")
-    least_gain: float = tuned(
+    least_decrease: float = tuned(
         1.0,
         "Decrease of the cost along a Jacobian below which no other is computed.",
         "that of chance: twelve fits from wrong constants end 2 to 19 below the truth; at a hundredth of the cost up to 4 above",

@@ -104,7 +104,7 @@ class ForecastSearching:
     near_promise: float = tuned(0.5, "Others are, too, if they promise this share of what the best promises.")
     most_finalists: int = tuned(5, "Effects calibrated beside each model at most.")
     near_gain: float = tuned(0.5, "Models that gain this share of what the best gains are calibrated to the end beside it.")
-    least_gain: float = tuned(6.0, "Gain of the log density below which one more effect ends the search.", "400 to 1")
+    least_log_gain: float = tuned(6.0, "Gain of the log density below which one more effect ends the search.", "400 to 1")
 
 
 @dataclass(frozen=True)
