@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from flexarm_env.arm import Arm
+from flexarm_env.identify.calibrate.calibration import Calibration
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.conclude import at_fault, conclude, insufficient, verdict_of, with_outlook
 from flexarm_env.identify.deadline import Deadline
@@ -20,6 +21,7 @@ from flexarm_env.identify.results import Diagnosis
 from flexarm_env.identify.select.criteria import CriteriaFactory, ThresholdCriteria
 from flexarm_env.identify.select.model import judge
 from flexarm_env.identify.select.search import Search
+from flexarm_env.identify.select.trace import Trace
 from flexarm_env.identify.settings import SETTINGS, Settings
 from flexarm_env.identify.workers import Workers
 from flexarm_env.recordings.recording import Recording
@@ -63,7 +65,7 @@ def diagnose(
         ('nothing_missing', [])
     """
     deadline = Deadline.after(time_limit)
-    constants, searching, outlook = Progress.to(progress).split(1, 18, 1)
+    constants, searching, searching_again, outlook = Progress.to(progress).split(1, 16, 2, 1)
     nominal, dataset = prepare(arm, recordings, settings, rate)
     constants.at(0.0, "inspecting the recordings")
     inspected = inspect_recordings(arm, recordings, settings)
@@ -79,11 +81,13 @@ def diagnose(
     constants.at(0.0, "refitting the constants")
     with calibrator.workers.threads():
         calibrator, calibration = calibrator.choose_hold_out()  # all that follows is judged on its dataset
-    base = judge((), calibration, calibrator.dataset)
+    search, trace = _search(calibrator, calibration, criteria, searching)
+    if (later := search.hold_out_late(trace)) is not calibrator:
+        again, longer = _search(later, later.calibrate_constants(), criteria, searching_again)
+        if again.criteria.is_fully_explained(longer.model):
+            search, trace = again, longer
+    calibrator, rules = search.calibrator, search.criteria
     nominal_score = calibrator.score(nominal)
-    rules = criteria(nominal_score, base.score, error_measure(nominal).judges_free_run, settings)
-
-    trace = Search(calibrator, rules).run(base, searching)
 
     outlook.at(0.0, "concluding")
     found = conclude(verdict_of(trace, rules), trace, nominal_score, arm, recordings, calibrator, seed)
@@ -95,6 +99,15 @@ def diagnose(
     found = replace(found, stopped=None if time_limit is None else trace.stop is not None)
     notes = notes + hold_out_notes(calibrator.dataset) + ([trace.stop.note] if trace.stop else [])
     return _with_run_facts(found, notes, deadline, seed)
+
+
+def _search(
+    calibrator: Calibrator, constants: Calibration, criteria: CriteriaFactory, progress: Progress
+) -> tuple[Search, Trace]:
+    base, nominal = judge((), constants, calibrator.dataset), calibrator.nominal
+    rules = criteria(calibrator.score(nominal), base.score, error_measure(nominal).judges_free_run, calibrator.settings)
+    search = Search(calibrator, rules)
+    return search, search.run(base, progress)
 
 
 def _with_run_facts(found: Diagnosis, notes: list[str], deadline: Deadline, seed: int) -> Diagnosis:

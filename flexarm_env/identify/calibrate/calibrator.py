@@ -112,11 +112,13 @@ class Calibrator:
         settled = self.settle(found)
         if settled is not found:
             return self, settled
-        later = hold_out_late(found.arm, self.dataset)
-        if later is self.dataset:
-            return self, found
-        calibrator = replace(self, dataset=later)
-        return calibrator, calibrator.calibrate_constants()
+        later = self.hold_out_late(found.arm)
+        return (self, found) if later is self else (later, later.calibrate_constants())
+
+    def hold_out_late(self, arm: Arm) -> Calibrator:
+        """Make a calibrator that sees more of the recordings where a calibrated arm fails late; itself where it does not."""
+        later = hold_out_late(arm, self.dataset)
+        return self if later is self.dataset else replace(self, dataset=later)
 
     def settle(self, found: Calibration) -> Calibration:
         """Calibrate on all of the data where the fitted part leaves constants uncertain; keep it where the model is to blame.

@@ -59,6 +59,18 @@ class Search:
             return asked
         return self._forward(asked, beside_forecast)
 
+    def hold_out_late(self, trace: Trace) -> Calibrator:
+        """Make a calibrator that sees more of the recordings where a model that was tried explains only what fits saw.
+
+        Then another effect comes into play late, which no fit could see. The calibrator is the same where something explains
+        everything, or nothing that much.
+        """
+        if self.is_late or self.criteria.is_fully_explained(trace.model):
+            return self.calibrator
+        tried = (trace.model.calibration, *(t.calibration for t in trace.ranking.values() if t.calibration))
+        best = min(tried, key=lambda c: self.calibrator.score(c.arm, held_out=False).windows)
+        return self.calibrator.hold_out_late(best.arm)
+
     def _forward(self, trace: Trace, progress: Progress) -> Trace:
         """Add the best effect, exchange those that another fits better, again, and drop what later ones made useless."""
         most, fewest = self.calibrator.settings.selecting.most_effects, len(trace.accepted)
