@@ -15,6 +15,7 @@ from flexarm_env.identify.progress import Progress
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.error_measure import Score, error_measure, score
 from flexarm_env.identify.select import fits
+from flexarm_env.identify.select.choose import simplest
 from flexarm_env.identify.select.criteria import ThresholdCriteria
 from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.screen import Trial
@@ -296,8 +297,21 @@ def test_far_off_forecasts_choose_among_those_that_remove_most(costs, named):
     ]
     for one, cost in zip(models, costs, strict=True):
         vars(one)["forecast_cost"] = cost
-    search, before = far_off(), scored(Score(70.0, 900.0))
-    assert search._simplest(models, before, search.criteria.measure([m.score for m in models])).effects == named
+    assert simplest_far_off(models, Score(70.0, 900.0)).effects == named
+
+
+def simplest_far_off(models, before):
+    search = far_off()
+    measure = search.criteria.measure([m.score for m in models])
+    return simplest(search.calibrator, search.criteria, models, scored(before), measure)
+
+
+def test_an_effect_that_windows_ask_for_is_chosen_though_whole_runs_end_elsewhere():
+    """A delay, beside a stop that is missing as well: where a run ends is up to the stop."""
+    models = [scored(Score(15.5, 125.9), "input_delay", "constant_torque"), scored(Score(7.0, 139.7), "input_delay")]
+    for one, cost in zip(models, (20_000.0, 9_000.0), strict=True):
+        vars(one)["forecast_cost"] = cost
+    assert simplest_far_off(models, Score(36.2, 147.5)).effects == ("input_delay",)
 
 
 @pytest.mark.parametrize(("whole_run", "verdict"), [(60.0, "effects"), (258.0, "effects"), (470.0, "unknown")])
@@ -306,3 +320,22 @@ def test_where_torque_noise_is_stated_effects_that_worsen_whole_runs_are_not_nam
     found = scored(Score(1.04, whole_run), *PAIR)
     criteria = ThresholdCriteria(Score(3.3, 250.0), Score(1.52, 250.0), False, SETTINGS)
     assert criteria.verdict(PAIR, scored(Score(1.52, 250.0)), found) == verdict
+
+
+@pytest.mark.parametrize("left", [1.0, 5.0])
+def test_an_effect_beside_which_much_is_left_is_accepted_with_one_that_explains_the_rest(monkeypatch, left):
+    """A stop beside a delay: windows hardly need it until the springs of the friction are there as well."""
+    stop, both = scored(Score(5.5, 20.0), "end_stop"), ["input_delay", "end_stop"]
+    vars(stop)["forecast_cost"] = 0.0
+    whole = scored(Score(left, left), *both, "presliding")
+    chains = []
+
+    def extend(calibrator, criteria, chain, progress):
+        chains.append([list(m.effects) for m in chain])
+        return (*chain, whole)
+
+    monkeypatch.setattr("flexarm_env.identify.select.search.extend_chain", extend)
+    trace = accept(Trace.begin(scored(Score(36.0, 147.0))), scored(Score(7.0, 139.7), "input_delay"), "input_delay")
+    found = far_off()._accept(trace, [stop], Progress())
+    assert chains == [[[], ["input_delay"], both]]
+    assert found.effects == ([*both, "presliding"] if left == 1.0 else ["input_delay"])

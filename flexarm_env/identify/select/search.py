@@ -10,6 +10,7 @@ import numpy as np
 
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.progress import Progress
+from flexarm_env.identify.select.choose import best_of, comes_near, removes_enough, simplest
 from flexarm_env.identify.select.criteria import Criteria, Measure
 from flexarm_env.identify.select.fits import fit_in_place
 from flexarm_env.identify.select.forecast_search import ForecastSearch
@@ -130,7 +131,7 @@ class Search:
         models = sorted(models, key=lambda m: measure(m.score))
         trace = trace.then("fit", tried=gains(trace, models[::-1], measure))
         possible = [m for m in models if not m.at_bound]
-        return self._accept(trace, possible) if possible else trace
+        return self._accept(trace, possible, more) if possible else trace
 
     def ask_forecasts(self, trace: Trace, progress: Progress) -> Trace:
         """Accept the model that forecasts ask for in place of another, if it explains the data, or removes most of the rest.
@@ -309,7 +310,7 @@ class Search:
 
     def _combine_at_once(self, trace: Trace, models: Sequence[Model], progress: Progress) -> Trace:
         """Accept the first effect and more beside it where none comes near alone, but some explain the data together."""
-        best = self._best(models)
+        best = best_of(self.criteria, models)
         if best is None:
             return trace
         trace = replace(trace, chain=(*trace.chain, best))
@@ -317,17 +318,16 @@ class Search:
             return trace
         return self.combine(trace, progress)
 
-    def _best(self, models: Sequence[Model]) -> Model | None:
-        """Find the best of the models whose effects stay within their ranges; None without any."""
-        possible = [m for m in models if not m.at_bound]
-        if not possible:
-            return None
-        measure = self.criteria.measure([m.score for m in possible])
-        return min(possible, key=lambda m: measure(m.score))
+    def _combine_beside(self, trace: Trace, found: Model, progress: Progress) -> Trace:
+        """Accept an effect that leaves the model far off beside one more, if both explain the data; one is accepted so far."""
+        if len(trace.accepted) + len(found.effects) > 2:
+            return trace
+        both = replace(found, effects=(*trace.effects, *found.effects))
+        return self.combine(replace(trace, chain=(trace.steps[0].model, trace.model, both)), progress)
 
     def _restarted(self, trace: Trace, models: list[Model]) -> list[Model]:
         """Calibrate the best model from the nominal constants, too, where none comes near: it alone may be what is missing."""
-        best = self._best(models)
+        best = best_of(self.criteria, models)
         if best is None or not none_comes_near(self.criteria, models, trace.model):
             return models
         with self.calibrator.workers.threads():
@@ -344,14 +344,14 @@ class Search:
             return trace
         return trace.then("recalibrate", again, with_last_score(trace.accepted, again))
 
-    def _accept(self, trace: Trace, models: Sequence[Model]) -> Trace:
+    def _accept(self, trace: Trace, models: Sequence[Model], progress: Progress) -> Trace:
         """Accept the best model if it removes enough; the simplest of those that remove nearly as much."""
         measure, before = self.criteria.measure([m.score for m in models]), trace.model
-        winner = self._simplest(models, before, measure)
-        if not self.criteria.is_worthwhile(before, winner, measure):
+        winner = simplest(self.calibrator, self.criteria, models, before, measure)
+        if not removes_enough(self.criteria, before, winner, measure):
             return trace
         if trace.accepted and self.criteria.stays_inadequate(winner, before):
-            return trace
+            return self._combine_beside(trace, winner, progress)
         alike = [m for m in models if len(m.effects) == len(winner.effects)]
         rivals = find_rivals(self.calibrator, self.criteria, before, winner, alike, measure)
         if not rivals.is_complete:
@@ -362,13 +362,10 @@ class Search:
         model = self._polish(winner)
         first, *companions = winner.effects
         beside_first = frozenset([*trace.effects, *companions])
-        near = tuple(m.effects[0] for m in alike if m.numbers < winner.numbers and self._comes_near(before, m, winner, measure))
+        simpler = [m for m in alike if m.numbers < winner.numbers]
+        near = tuple(m.effects[0] for m in simpler if comes_near(self.criteria, before, m, winner, measure))
         added = [Accepted(first, names, model.score, beside_first, near), *(Accepted(n, (n,), model.score) for n in companions)]
         return trace.then("accept", model, [*trace.accepted, *added])
-
-    def _comes_near(self, before: Model, model: Model, winner: Model, measure: Measure) -> bool:
-        removed, most = (measure(before.score) - measure(m.score) for m in (model, winner))
-        return self.criteria.comes_near(removed, most)
 
     def _polish(self, model: Model) -> Model:
         """Continue the calibration of a model, as long as there is time."""
@@ -377,31 +374,6 @@ class Search:
         with self.calibrator.workers.threads():
             calibration = self.calibrator.polish(model.calibration)
         return judge((), calibration, self.calibrator.dataset)
-
-    def _simplest(self, models: Sequence[Model], before: Model, measure: Measure) -> Model:
-        """Choose the best model; a single effect where no companion of nearly the best adds anything worthwhile.
-
-        Where whole runs say little, forecasts choose among those that remove nearly as much as the best one: a run ends where a
-        hub happened to stick, and a flexible enough effect imitates that.
-        """
-        best = min(models, key=lambda m: measure(m.score))
-        by_forecasts = self.criteria.ranks_by_forecasts(best.score)
-        if by_forecasts:
-            worthwhile = [m for m in models if self.criteria.is_worthwhile(before, m, measure)]
-            near = [m for m in worthwhile if self._comes_near(before, m, best, measure)] or [best]
-            models = sorted(near, key=lambda m: m.forecast_cost)
-        singles, pairs = ([m for m in models if (len(m.effects) == 1) == single] for single in (True, False))
-        if not singles:
-            return models[0]
-        if by_forecasts:
-            most = singles[0].forecast_cost - self.calibrator.settings.forecast_searching.least_log_gain
-            better = [m for m in pairs if m.forecast_cost < most]
-        else:
-            level = self.criteria.equivalence_level(models[0].score, measure)
-            better = [m for m in pairs if measure(m.score) <= level]
-        measures: tuple[Measure, ...] = (measure, lambda s: s.excess)  # off the noise, one may rest where it should move
-        chosen = [m for m in better if any(self.criteria.is_worthwhile(singles[0], m, by) for by in measures)]
-        return chosen[0] if chosen else singles[0]
 
 
 def _gains_of_screening(trials: Sequence[Trial]) -> list[Tried]:
