@@ -248,3 +248,22 @@ def test_a_size_is_not_negative(name):
 def test_a_negative_size_is_refused():
     with pytest.raises(InputError, match=r"input_delay\.delay .*out of bounds"):
         Arm.load("thesis").with_effect("input_delay", delay=-0.01)
+
+
+@pytest.mark.parametrize(
+    ("name", "parameter", "units"),
+    [
+        ("saturation", "limit", {"cu-rigid": "V", "thesis": "A"}),
+        ("dead_zone", "width", {"cu-rigid": "V", "thesis": "A"}),
+        ("rate_limit", "rate", {"cu-rigid": "V/s", "thesis": "A/s"}),
+        ("brush_drop", "drop", {"cu-rigid": "V"}),
+    ],
+)
+def test_what_acts_on_the_command_has_its_unit(name, parameter, units):
+    found = {arm: Arm.load(arm).with_effect(name).parameter(f"effects.{name}.{parameter}").unit for arm in units}
+    assert found == units
+
+
+def test_readings_are_tried_early_and_late():
+    offsets = {math.copysign(1.0, start["offset"]) for start in catalogue()["time_offset"].starts()}
+    assert offsets == {-1.0, 1.0}

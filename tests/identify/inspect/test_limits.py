@@ -77,6 +77,17 @@ def test_a_motor_that_only_turns_forward_rests_at_zero_and_not_at_a_rail():
     assert inspect_recordings(Arm.load("cu-rigid"), [run]).faults == ()
 
 
+def test_a_lone_angle_that_leaves_zero_at_a_slope_rests_there_and_is_at_no_rail():
+    """No other signal says that the hub rests; zero does."""
+    time = np.arange(0.0, 8.0, 0.01)
+    angle = np.round(np.maximum(np.sin(np.pi * time / 2.0), 0.0), 3)
+    run = Recording.from_arrays("run", time, "voltage", np.sin(time), {"arm_angle": angle})
+    arm = Arm.load("cu-rigid")
+    assert [one for one in inspect_recordings(arm, [run]).faults if one.kind == "rail"] == []
+    lifted = Recording.from_arrays("run", time, "voltage", np.sin(time), {"arm_angle": angle + 0.1})
+    assert "rail" in [one.kind for one in inspect_recordings(arm, [lifted]).faults]
+
+
 def test_what_a_rail_leaves_of_a_noisy_reading_is_not_lost(thesis, square):
     """Between the readings at the rail, which are none, the others come one by one and repeat by chance."""
     step = 0.002
