@@ -209,6 +209,13 @@ def scale_out_words(numbers: str) -> str:
     return words(json.loads(numbers))
 
 
+def lines_words(numbers: str) -> str:
+    """Write the share of lines that tests execute."""
+    from benchmarks.lines import words
+
+    return words(json.loads(numbers))
+
+
 def lines_with(first: str) -> Callable[[str], str]:
     """Make a function that takes the table with this beginning from a report in Markdown."""
 
@@ -253,6 +260,7 @@ TABLES = (
     Table("references", PROJECT / "docs" / "learning.md", RESULTS / "recipe" / "recipe.md", lines_with("| agent")),
     Table("versions", PROJECT / "CONTRIBUTING.md", RESULTS / "versions" / "versions.json", versions_table),
     Table("endurance", PROJECT / "docs" / "reliability.md", RESULTS / "endurance" / "endurance.json", endurance_words),
+    Table("lines", PROJECT / "docs" / "reliability.md", RESULTS / "lines" / "lines.json", lines_words),
     Table("scale-out", PROJECT / "docs" / "cluster.md", RESULTS / "speed" / "scale_out.json", scale_out_words),
     Table("times", PROJECT / "docs" / "hidden-effects.md", HIDDEN / "table.json", times_words),
 )
