@@ -20,8 +20,8 @@ _FACTOR = rf"(?:{_TERM}|{_GROUP})"
 _UNIT = re.compile(rf"(?:1 */ *)?{_FACTOR}(?: *[*/·] *{_FACTOR}| +{_FACTOR})*")
 # No digit may follow the number, lest "2 000" be read as 2, but for a unit such as 1/s that stands apart; nor an e without an
 # exponent, lest "4e" be elementary charges. Possessive, so that no text takes time that grows faster than its length.
-_NUMBER = r"[+-]?(?:\d++(?:\.\d*+)?+|\.\d++)(?:[eE][+-]?\d++|(?![eE](?![A-Za-z])))"
-_QUANTITY = re.compile(rf"({_NUMBER})(?:(?:\s++(?=1 */)|\s*+(?=[^\d\s.,:;-]))(.*+))?+")
+_NUMBER = r"[+-]?(?:\d++(?>(?:\.\d*+)?)|\.\d++)(?:[eE][+-]?\d++|(?![eE](?![A-Za-z])))"
+_QUANTITY = re.compile(rf"({_NUMBER})(?>(?:(?:\s++(?=1 */)|\s*+(?=[^\d\s.,:;-]))(.*+))?)")
 _LONGEST = 60
 _PERCENT = ("%", "percent")
 # Without these pint reads Nm as "number metre", a count of yarn, and the others not at all.

@@ -179,6 +179,20 @@ def test_every_import_is_declared():
         assert distributions & declared, f"flexarm_env imports {name}, which pyproject.toml does not declare"
 
 
+def strings_of_the_package() -> Iterator[tuple[str, str]]:
+    for path in sorted((PROJECT / PACKAGE).rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                yield str(path.relative_to(PROJECT)), node.value
+
+
+def test_no_pattern_repeats_a_group_possessively():
+    # Before Python 3.11.5 such a repeat does not give back what a failed last round took; an atomic group does.
+    repeat = re.compile(r"\)(?:[?*+]|\{[\d,]+\})\+")
+    found = [(path, text) for path, text in strings_of_the_package() if repeat.search(text)]
+    assert not found
+
+
 def test_version_is_the_same_everywhere():
     import flexarm_env
 

@@ -22,7 +22,7 @@ MOST_CELLS = 100_000
 
 # Possessive, so that no cell takes time that grows faster than its length.
 _DECIMAL_COMMA = re.compile(r"\s*+[+-]?+\d++,\d++\s*+")
-_COMMA_AND_THREE = re.compile(r"\s*+[+-]?+[1-9]\d{0,2}+(?:,\d{3})++\s*+")
+_COMMA_AND_THREE = re.compile(r"\s*+[+-]?+[1-9]\d{0,2}+(?>(?:,\d{3})+)\s*+")
 #: Of a condition, such as whether the torque of a servo is enabled.
 _TRUTH = {"true": "1", "false": "0"}
 #: Blanks and tabs part cells; a thin or a hard blank, which marks thousands, does not, though Python splits there.
@@ -140,7 +140,7 @@ def _filled(rows: list[str], delimiter: str) -> list[str]:
         return [re.sub(r"(?<!\S)NA(?!\S)", "nan", row) for row in rows]
     blank = "[ \t]" if delimiter != "\t" else " "
     end = re.escape(delimiter)
-    empty = re.compile(rf"(?:^|(?<={end})){blank}*+(?:NA{blank}*+)?+(?={end}|$)")
+    empty = re.compile(rf"(?:^|(?<={end})){blank}*+(?>(?:NA{blank}*+)?)(?={end}|$)")
     return [empty.sub("nan", row) for row in rows]
 
 

@@ -11,11 +11,12 @@ from flexarm_env.recordings.messages import quoted
 CONDITIONS = {"payload": "kg", "start": "s"}
 
 # Possessive throughout, so that no line takes time that grows faster than its length.
-_CONDITION = re.compile(r"([A-Za-z_]\w*+)\s*+(?:\[([^\]]*+)\]\s*+|\(([^()]*+)\)\s*+)?+([=:])\s*+(.*+)")
+_CONDITION = re.compile(r"([A-Za-z_]\w*+)\s*+(?>(?:\[([^\]]*+)\]\s*+|\(([^()]*+)\)\s*+)?)([=:])\s*+(.*+)")
 _STATEMENT = re.compile(
-    r"([A-Za-z_]\w*+)\s*+(?:[\[(,;/]\s*+([A-Za-zµμ][^\]),;=:]*+)[\])]?+\s*+)?+(?:(?:is|was|of|->)(?!\w)|[=:,;]++)?+\s*+(.*+)"
+    r"([A-Za-z_]\w*+)\s*+(?>(?:[\[(,;/]\s*+([A-Za-zµμ][^\]),;=:]*+)[\])]?+\s*+)?)"
+    r"(?>(?:(?:is|was|of|->)(?!\w)|[=:,;]++)?)\s*+(.*+)"
 )
-_VALUE = re.compile(r"([+-]?+(?:\d++(?:\.\d*+|,\d++)?+|\.\d++)(?:[eE][+-]?+\d++)?+)[\s,;]*+([A-Za-zµμ]*+)(.*+)")
+_VALUE = re.compile(r"([+-]?+(?:\d++(?>(?:\.\d*+|,\d++)?)|\.\d++)(?>(?:[eE][+-]?+\d++)?))[\s,;]*+([A-Za-zµμ]*+)(.*+)")
 #: What follows the number of a date, a time, a version or a share.
 _OF_A_DATE = re.compile(r"[-:./]\d")
 _LONGEST_UNIT = 10

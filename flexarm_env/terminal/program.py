@@ -71,8 +71,11 @@ class Program:
         try:
             with _stops(came):
                 refuse_empty(arguments)
-                return main(arguments) or DONE
+                code = main(arguments) or DONE
+                sys.stdout.flush()
+                return code
         except BaseException as error:
+            _empty_stdout()
             if came or isinstance(error, KeyboardInterrupt):
                 if not self.name:
                     print(file=sys.stderr)  # ends a line that showed the progress
@@ -92,9 +95,6 @@ class Program:
         if isinstance(error, InputError):
             return self.complain(str(error))
         if isinstance(error, BrokenPipeError):
-            from flexarm_env.terminal.outputs import discard_stdout
-
-            discard_stdout()
             return DONE
         if isinstance(error, OSError):
             place = f"{error.filename}: " if error.filename else ""
@@ -131,6 +131,16 @@ def refuse_empty(arguments: Sequence[str]) -> None:
         before = named[1] if named else next(iter(arguments[place - 1 : place]), "")
         where = f"the value of {before}" if before.startswith("--") else f"argument {place + 1}"
         raise InputError(f"{where} is empty; write one, or leave it out (is a variable of the shell not set?)")
+
+
+def _empty_stdout() -> None:
+    """Write what stdout still holds, and discard what cannot be written: Python would complain when it shuts down."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        from flexarm_env.terminal.outputs import discard_stdout
+
+        discard_stdout()
 
 
 @contextmanager

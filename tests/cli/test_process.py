@@ -64,10 +64,11 @@ def test_a_closed_stream_is_no_error(tmp_path, closed):
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no /dev/full")
 @pytest.mark.parametrize("arguments", ["effects", "--version", "--help"])
-def test_a_full_stdout_is_one_line(arguments):
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_full_stdout_is_one_line(arguments, unbuffered):
     program = "from flexarm_env.cli import main; main()"
     command = f"{sys.executable} -c '{program}' {arguments} >/dev/full"
-    environment = os.environ | {"PYTHONPATH": str(Path(flexarm_env.__file__).parents[1])}
+    environment = os.environ | {"PYTHONPATH": str(Path(flexarm_env.__file__).parents[1]), "PYTHONUNBUFFERED": unbuffered}
     run = subprocess.run(command, shell=True, capture_output=True, text=True, env=environment, check=False)
     assert (run.returncode, len(run.stderr.splitlines())) == (2, 1)
 

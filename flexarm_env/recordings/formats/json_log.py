@@ -23,7 +23,7 @@ from flexarm_env.sensors import known_sensors
 Floats = NDArray[np.float64]
 
 # Possessive, so that no path takes time that grows faster than its length.
-_PATH = re.compile(r"\w++(?:\.\w++|\[\d{1,9}+\])*+")
+_PATH = re.compile(r"\w++(?>(?:\.\w++|\[\d{1,9}+\])*)")
 _STEP = re.compile(r"(\w+)|\[(\d+)\]")
 _MOST_SHOWN = 12
 #: Parts of a log, each of which takes many times its length in memory: a gigabyte is full of as many.

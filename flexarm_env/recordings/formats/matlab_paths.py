@@ -13,7 +13,7 @@ from flexarm_env.recordings.formats.matlab_file import Variable
 from flexarm_env.recordings.messages import quoted
 
 # Possessive, so that no path takes time that grows faster than its length.
-_STEP = re.compile(r"\.([A-Za-z]\w*+)|\((\d++|:)(?:,(\d++|:))?+\)|\{(\d++)(?:,(\d++))?+\}")
+_STEP = re.compile(r"\.([A-Za-z]\w*+)|\((\d++|:)(?>(?:,(\d++|:))?)\)|\{(\d++)(?>(?:,(\d++))?)\}")
 _NAME = re.compile(r"[A-Za-z]\w*+")
 _MOST_SHOWN, _MOST_FIELDS = 8, 6
 

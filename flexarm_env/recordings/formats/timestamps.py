@@ -13,8 +13,8 @@ from flexarm_env.recordings.cells import cut
 from flexarm_env.recordings.messages import quoted
 
 # Possessive, so that no cell takes time that grows faster than its length.
-_STAMP = re.compile(r"(\d{4}-\d\d-\d\d)[T ](\d\d:\d\d(?::\d\d(?:[.,]\d{1,9}+)?+)?+)[ ]?+(Z|[+-]\d\d:?\d\d)?+")
-_OF_DAY = re.compile(r"\d\d:\d\d:\d\d(?:[.,]\d{1,9}+)?+")
+_STAMP = re.compile(r"(\d{4}-\d\d-\d\d)[T ](\d\d:\d\d(?>(?::\d\d(?>(?:[.,]\d{1,9}+)?))?))[ ]?+(?>(Z|[+-]\d\d:?\d\d)?)")
+_OF_DAY = re.compile(r"\d\d:\d\d:\d\d(?>(?:[.,]\d{1,9}+)?)")
 _HALF_A_DAY, _DAY = np.timedelta64(12, "h"), np.timedelta64(24, "h")
 
 

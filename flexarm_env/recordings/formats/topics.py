@@ -21,7 +21,7 @@ from flexarm_env.recordings.table import MOST_LINES, Table
 Floats = NDArray[np.float64]
 
 # Possessive, so that no path takes time that grows faster than its length.
-_PATH = re.compile(r"(/[\w/~-]++)?((?:\.?+\w++|\[[^\[\]]++\])*+)")
+_PATH = re.compile(r"(/[\w/~-]++)?((?>(?:\.?+\w++|\[[^\[\]]++\])*))")
 _STEP = re.compile(r"\.?(\w+)|\[([^\[\]]+)\]")
 LOG_TIME = "log_time"
 #: Largest time in a message: nanoseconds of a thousand years.
