@@ -80,13 +80,15 @@ def diagnose(
 
     constants.at(0.0, "refitting the constants")
     with calibrator.workers.threads():
-        calibrator, calibration = calibrator.choose_hold_out()  # all that follows is judged on its dataset
+        calibrator, calibration = calibrator.choose_hold_out()
     search, trace = _search(calibrator, calibration, criteria, searching)
     if (later := search.hold_out_late(trace)) is not calibrator:
-        again, longer = _search(later, later.calibrate_constants(), criteria, searching_again)
+        with later.workers.threads():
+            calibration = later.calibrate_constants()
+        again, longer = _search(later, calibration, criteria, searching_again)
         if again.criteria.is_fully_explained(longer.model):
             search, trace = again, longer
-    calibrator, rules = search.calibrator, search.criteria
+    calibrator, rules = search.calibrator, search.criteria  # all that follows is judged on this one's dataset
     nominal_score = calibrator.score(nominal)
 
     outlook.at(0.0, "concluding")
