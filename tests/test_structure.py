@@ -19,7 +19,7 @@ SEARCH = [file for file in IDENTIFY if "select" in file.parts]
 
 #: Layers of identify, from below; a file imports from its own layer and those above it in this list.
 IDENTIFY_LAYERS = (
-    {"deadline", "settings", "progress", "workers", "percent"},
+    {"deadline", "settings", "progress", "threads", "workers", "percent"},
     {"replay"},
     {"calibrate"},
     {"select"},

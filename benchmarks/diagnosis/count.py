@@ -20,7 +20,7 @@ from flexarm_env.identify.workers import Task, Workers
 IDENTIFY = "flexarm_env.identify"
 #: Functions whose calls are counted, with the CPU time of each call less that of the parts inside it.
 PARTS = {
-    "residual": [f"{IDENTIFY}.calibrate.objective:Objective._residual_by"],
+    "residual": [f"{IDENTIFY}.calibrate.objective:Objective._whitened"],
     "initial state": [f"{IDENTIFY}.replay.start_fit:Stretch.fit", f"{IDENTIFY}.replay.start_fit:Stretch.follow"],
     "plant": ["flexarm_env.plant.plant:Plant._compile"],
     "observer": [f"{IDENTIFY}.replay.observer:physical_gains"],

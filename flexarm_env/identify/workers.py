@@ -14,13 +14,13 @@ from itertools import takewhile
 from multiprocessing import resource_tracker
 from typing import Any, Literal
 
-from joblib import Parallel, delayed, parallel_config
+from joblib import Parallel, delayed
 from joblib.externals.loky.backend import resource_tracker as loky_tracker
 from joblib.externals.loky.process_executor import TerminatedWorkerError
-from threadpoolctl import threadpool_limits
 
 from flexarm_env.errors import InputError
 from flexarm_env.identify.deadline import Deadline
+from flexarm_env.identify.threads import threads
 
 #: A function and its positional arguments. Both must pickle.
 Task = tuple[Callable[..., Any], tuple[Any, ...]]
@@ -30,7 +30,7 @@ LOOK = 0.5
 
 @dataclass(frozen=True)
 class Workers:
-    """Processes for many tasks; threads for the columns of a Jacobian where only one fit runs.
+    """Processes for many tasks; threads for the replays of each.
 
     Attributes:
         jobs: processes or threads at once.
@@ -96,11 +96,8 @@ class Workers:
 
     @contextmanager
     def threads(self) -> Iterator[None]:
-        """Open a context in which columns of Jacobians are computed in threads: replays release the interpreter.
-
-        Linear algebra takes one thread there: its matrices are narrow, and more threads sum in another order on other machines.
-        """
-        with parallel_config(backend="threading", n_jobs=self.jobs), threadpool_limits(limits=1, user_api="blas"):
+        """Open a context in which replays run in threads."""
+        with threads(self.jobs):
             yield
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
 from typing import Any, Self
 
@@ -75,6 +76,12 @@ class Plant:
         self.kernel.prepare(d, n)
         self.scratch = np.zeros(self.kernel.scratch_size(n))
         self.state = np.zeros(at.Z_START + 2 * self.blocks)
+
+    def with_own_state(self) -> Self:
+        """Make the same plant with a state of its own, for a replay at the same time."""
+        other = copy.copy(self)
+        other.scratch, other.state = np.zeros_like(self.scratch), self.state.copy()
+        return other
 
     def constants_of(self, structures: Sequence[Structure], laws: Sequence[Sequence[ActiveLaw]]) -> Matrix:
         """Compute the constants (arms, numbers) of arms that differ from this one in their numbers only.

@@ -6,11 +6,10 @@ schedule. Where a step gains nothing more, slopes are taken over wider differenc
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from joblib import Parallel, delayed
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
@@ -20,6 +19,7 @@ from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.density import Prediction, likeliest, suited
 from flexarm_env.identify.replay.forecast import Disturbances, window_samples
 from flexarm_env.identify.settings import LEAST_NORM
+from flexarm_env.identify.threads import in_threads
 
 Floats = NDArray[np.float64]
 
@@ -134,7 +134,7 @@ def error_slopes(prediction: Prediction, parameters: FitParameters) -> Floats:
         change = prediction.errors_of(parameters.apply(prediction.arm, there)) - prediction.errors
         return np.asarray(change.ravel() / widths[k])
 
-    columns = in_threads([(slope, k) for k in range(len(x))])
+    columns = in_threads(slope, [(k,) for k in range(len(x))])
     return np.stack(columns, axis=1) if columns else np.zeros((prediction.errors.size, 0))
 
 
@@ -166,9 +166,4 @@ def wide_error_slopes(prediction: Prediction, parameters: FitParameters, slopes:
         )
         return np.asarray(change.ravel() / (2.0 * widths[k]))
 
-    return np.stack(in_threads([(slope, k) for k in range(len(x))]), axis=1)
-
-
-def in_threads(tasks: list[tuple[Callable[[int], Floats], int]]) -> list[Floats]:
-    """Run functions of one number in the threads of the present context, since replays release the interpreter."""
-    return list(Parallel(require="sharedmem")(delayed(function)(number) for function, number in tasks))
+    return np.stack(in_threads(slope, [(k,) for k in range(len(x))]), axis=1)

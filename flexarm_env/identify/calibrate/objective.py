@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from joblib import Parallel, delayed
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
@@ -20,6 +19,7 @@ from flexarm_env.identify.replay.replay import replay
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.replay.start_bank import StartBank
 from flexarm_env.identify.settings import FAILED_ERROR
+from flexarm_env.identify.threads import in_threads
 from flexarm_env.plant.plant import Plant
 
 Floats = NDArray[np.float64]
@@ -87,20 +87,18 @@ class Objective:
         return self.residual_of(self.parameters.apply(self.arm, x))
 
     def residuals(self, points: Sequence[Floats]) -> list[Floats]:
-        """Compute the residual at each of some points (x,), in threads where a `Workers.threads` context is open."""
-        arms = [self.parameters.apply(self.arm, x) for x in points]
-        every = self.dataset.plants_of(arms, self.reduced)
-        pairs = zip(arms, every, strict=True)
-        found: list[Floats] = Parallel(require="sharedmem")(delayed(self._residual_by)(arm, plants) for arm, plants in pairs)
-        return found
+        """Compute the residual at each of some points (x,)."""
+        return self._residuals_of([self.parameters.apply(self.arm, x) for x in points])
 
     def residual_of(self, arm: Arm) -> Floats:
         """Compute the residual of another arm under the same weights."""
-        return self._residual_by(arm, self.dataset.plants(arm, self.reduced))
+        return self._residuals_of([arm])[0]
 
-    def _residual_by(self, arm: Arm, plants: Mapping[Stated, Plant]) -> Floats:
-        pairs = zip(self._errors_by(arm, plants, self.dataset.fitted), self.weights.sigma, strict=True)
-        return self._bounded([(error / sigma).ravel() for error, sigma in pairs])
+    def _residuals_of(self, arms: Sequence[Arm]) -> list[Floats]:
+        return [self._whitened(errors) for errors in self._errors_of_each(arms, self.dataset.fitted)]
+
+    def _whitened(self, errors: Sequence[Floats]) -> Floats:
+        return self._bounded([(error / sigma).ravel() for error, sigma in zip(errors, self.weights.sigma, strict=True)])
 
     def residual_by_own_observers(self, arm: Arm) -> Floats:
         """Compute the residual of an arm whose values are not near those that the kept observers are designed for."""
@@ -178,19 +176,23 @@ class Objective:
         return np.clip(np.nan_to_num(np.concatenate(parts), nan=largest), -largest, largest)
 
     def _errors(self, arm: Arm, runs: Sequence[Run]) -> list[Floats]:
-        return self._errors_by(arm, self.dataset.plants(arm, self.reduced), runs)
+        return self._errors_of_each([arm], runs)[0]
 
-    def _errors_by(self, arm: Arm, plants: Mapping[Stated, Plant], runs: Sequence[Run]) -> list[Floats]:
-        dataset = self.dataset
-        judges_free_run = error_measure(arm).judges_free_run
-        errors = []
-        for place, run in enumerate(runs):
-            plant = plants[run.stated]
-            gains = self.observers.gains(arm, plant, run, dataset, self.torque_noise) if self.torque_noise > 0.0 else None
-            start = self.starts.start(plant, run, place, dataset)
-            errors.append(run.errors(replay(plant, run, dataset, gains, start)))
-            if not judges_free_run:
-                errors[-1][: round(dataset.settings.preparation.settling / dataset.interval)] = 0.0
+    def _errors_of_each(self, arms: Sequence[Arm], runs: Sequence[Run]) -> list[list[Floats]]:
+        """Compute the errors (samples, signals) of each run by each of some arms, in threads where there are some."""
+        every = self.dataset.plants_of(arms, self.reduced)
+        places = range(len(runs))
+        tasks = [(arm, plants[runs[place].stated], place) for arm, plants in zip(arms, every, strict=True) for place in places]
+        errors = in_threads(lambda arm, plant, place: self._errors_by(arm, plant, runs[place], place), tasks)
+        return [errors[first : first + len(runs)] for first in range(0, len(errors), len(runs))]
+
+    def _errors_by(self, arm: Arm, plant: Plant, run: Run, place: int) -> Floats:
+        dataset, own = self.dataset, plant.with_own_state()
+        gains = self.observers.gains(arm, own, run, dataset, self.torque_noise) if self.torque_noise > 0.0 else None
+        start = self.starts.start(own, run, place, dataset)
+        errors = run.errors(replay(own, run, dataset, gains, start))
+        if not error_measure(arm).judges_free_run:
+            errors[: round(dataset.settings.preparation.settling / dataset.interval)] = 0.0
         return errors
 
 

@@ -16,7 +16,9 @@ from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.observer import innovation_sigma, innovation_sigmas, observer_gains
 from flexarm_env.identify.replay.readings import bounded
 from flexarm_env.identify.replay.replay import WindowStates, replay, states_before, whole_replay, window_observers, window_replay
+from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.settings import LEAST_EXCESS
+from flexarm_env.identify.threads import in_threads
 from flexarm_env.plant.plant import Plant
 
 Floats = NDArray[np.float64]
@@ -116,17 +118,19 @@ class WindowErrors:
         """Measure the errors of an arm on the held-out or the fitted part."""
         plants = dataset.plants(arm)
         observers = {stated: window_observers(arm, plant, dataset) for stated, plant in plants.items()}
-        totals, parts = np.zeros(2), []
-        for run in dataset.runs_to_replay(held_out):
+
+        def errors_of(run: Run) -> tuple[Floats, Floats]:
             rows = ~run.train if held_out else run.train
-            plant, first = plants[run.stated], int(np.argmax(rows))
+            plant, first = plants[run.stated].with_own_state(), int(np.argmax(rows))
             start = dataset.stretch(run).fit(plant)
             windows = window_replay(plant, run, dataset, observers[run.stated], first, start)
             free = replay(plant, run, dataset, start=start)
-            both = [run.errors(y, dataset.noise)[rows] for y in (windows, free)]
-            totals += [_squares(errors) for errors in both]
-            parts.append((both[0], dataset.noise))
-        windows, free = np.sqrt(totals / dataset.readings(held_out))
+            return run.errors(windows, dataset.noise)[rows], run.errors(free, dataset.noise)[rows]
+
+        both = in_threads(errors_of, [(run,) for run in dataset.runs_to_replay(held_out)])
+        squares = np.sum([[_squares(windows), _squares(free)] for windows, free in both], axis=0)
+        windows, free = np.sqrt(squares / dataset.readings(held_out))
+        parts = [(errors, dataset.noise) for errors, _ in both]
         return Score(float(windows), float(free), _by_signal(parts, dataset, held_out))
 
     def states_before(self, arm: Arm, dataset: Dataset) -> list[WindowStates]:
@@ -217,11 +221,12 @@ def closed_loop_errors(arms: Mapping[str, Arm], dataset: Dataset) -> dict[str, f
 def window_errors(arm: Arm, plants: Mapping[Stated, Plant], dataset: Dataset) -> list[Floats]:
     """Compute the errors over noise (samples, signals) of each whole run in windows; 0 where nothing was measured."""
     observers = {stated: window_observers(arm, plant, dataset) for stated, plant in plants.items()}
-    errors = []
-    for run in dataset.runs:
-        replayed = window_replay(plants[run.stated], run, dataset, observers[run.stated])
-        errors.append(bounded(run.errors(replayed, dataset.noise)))
-    return errors
+
+    def errors_of(run: Run) -> Floats:
+        replayed = window_replay(plants[run.stated].with_own_state(), run, dataset, observers[run.stated])
+        return bounded(run.errors(replayed, dataset.noise))
+
+    return in_threads(errors_of, [(run,) for run in dataset.runs])
 
 
 def _closed_loop_error(arm: Arm, dataset: Dataset) -> float:

@@ -11,7 +11,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from joblib import Parallel, delayed
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
@@ -26,6 +25,7 @@ from flexarm_env.identify.select.promise import Promise, promises
 from flexarm_env.identify.select.starts import candidates, rivals_of
 from flexarm_env.identify.select.trace import Accepted, Tried
 from flexarm_env.identify.settings import ForecastSearching
+from flexarm_env.identify.threads import in_threads
 
 Floats = NDArray[np.float64]
 
@@ -157,7 +157,7 @@ class ForecastSearch:
             found = promises(one.prediction, one.parameters, names)
             wanted = self._finalists(one, found)
             stage.at(0.5, f"fitting {', '.join(p.effect for p in wanted)}{_beside(one)}")
-            for new in Parallel(require="sharedmem")(delayed(self._with)(one, promise) for promise in wanted):
+            for new in in_threads(self._with, [(one, promise) for promise in wanted]):
                 key = frozenset(new.effects)
                 if not new.at_bound and (key not in fresh or _fitted_cost(new) < _fitted_cost(fresh[key])):
                     fresh[key] = new

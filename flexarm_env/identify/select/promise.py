@@ -11,7 +11,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from joblib import Parallel, delayed
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
@@ -22,6 +21,7 @@ from flexarm_env.identify.replay.forecast import FilteredStates, filtered_states
 from flexarm_env.identify.replay.forecast_spread import Leads
 from flexarm_env.identify.select.starts import changes_in_proportion, has_two_signs, sized, starts_of
 from flexarm_env.identify.settings import LEAST_NORM
+from flexarm_env.identify.threads import in_threads
 
 Floats = NDArray[np.float64]
 
@@ -110,7 +110,7 @@ def promises(now: Prediction, parameters: FitParameters, effects: Sequence[str])
     backgrounds = [_background(parameters, at_torque(now, torque)) for torque in torques]
     base = min(background.cost(background.left) for background in backgrounds)
     tasks = [(name, start) for name in effects for start in starts_of(now.arm, name, now.dataset)]
-    tried = Parallel(require="sharedmem")(delayed(_promise)(backgrounds, base, name, start) for name, start in tasks)
+    tried = in_threads(_promise, [(backgrounds, base, name, start) for name, start in tasks])
     best: dict[str, Promise] = {}
     for one in tried:
         if one.gain > 0.0 and (one.effect not in best or one.cost < best[one.effect].cost):
