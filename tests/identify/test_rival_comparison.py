@@ -15,6 +15,7 @@ from flexarm_env.identify.select.criteria import ThresholdCriteria
 from flexarm_env.identify.select.model import Model
 from flexarm_env.identify.select.trace import Accepted
 from flexarm_env.identify.settings import SETTINGS
+from flexarm_env.identify.workers import Workers
 
 NUMBERS = {"constant_torque": 1, "asymmetric_coulomb": 1, "cable_stiffness": 2, "end_stop": 4}
 BASE = 3  # numbers of the constants
@@ -49,7 +50,7 @@ def compared(
     monkeypatch.setattr(swap, "judge", lambda effects, calibration, dataset: by_calibration[id(calibration)])
     calibrator = SimpleNamespace(
         settings=SETTINGS,
-        workers=SimpleNamespace(threads=nullcontext),
+        workers=SimpleNamespace(threads=nullcontext, map=Workers(1).map),
         dataset=SimpleNamespace(
             signals=(), noise=(), scales={}, middle_of_travel=0.0, settings=SETTINGS, readings=lambda held_out: 2000
         ),

@@ -15,7 +15,7 @@ from flexarm_env.identify.progress import Progress
 from flexarm_env.identify.replay.dataset import prepare
 from flexarm_env.identify.replay.error_measure import Score, error_measure, score
 from flexarm_env.identify.select import fits
-from flexarm_env.identify.select.choose import simplest
+from flexarm_env.identify.select.choose import simplest, with_forecasts
 from flexarm_env.identify.select.criteria import ThresholdCriteria
 from flexarm_env.identify.select.model import Model, judge
 from flexarm_env.identify.select.screen import Trial
@@ -24,6 +24,7 @@ from flexarm_env.identify.select.starts import rivals_of
 from flexarm_env.identify.select.swap import RivalComparison, exchange
 from flexarm_env.identify.select.trace import Accepted, Trace, Tried
 from flexarm_env.identify.settings import SETTINGS
+from flexarm_env.identify.workers import Workers
 from flexarm_env.recordings.recording import Recording
 
 TRUE = {
@@ -171,7 +172,7 @@ OTHERS = ("time_offset", "base_tilt")
 
 def far_off() -> Search:
     """A search for what an arm lacks that is far off, with no recordings behind it."""
-    workers = SimpleNamespace(deadline=SimpleNamespace(is_over=False), map_in_time=lambda tasks: [])
+    workers = SimpleNamespace(deadline=SimpleNamespace(is_over=False), map_in_time=lambda tasks: [], map=Workers(1).map)
     calibrator = SimpleNamespace(settings=SETTINGS, workers=workers, dataset=SimpleNamespace(signals=()))
     return Search(calibrator, ThresholdCriteria(Score(28.0, 480.0), Score(26.0, 480.0), True, SETTINGS))
 
@@ -298,6 +299,15 @@ def test_far_off_forecasts_choose_among_those_that_remove_most(costs, named):
     for one, cost in zip(models, costs, strict=True):
         vars(one)["forecast_cost"] = cost
     assert simplest_far_off(models, Score(70.0, 900.0)).effects == named
+
+
+@pytest.mark.parametrize(("left", "fitted"), [(9.0, True), (2.0, False)])
+def test_forecasts_are_fitted_only_where_models_are_ranked_by_them(monkeypatch, left, fitted):
+    ranked, search = [], far_off()
+    monkeypatch.setattr(Model, "forecast_cost", property(lambda m: ranked.append(m.effects)))
+    models = [scored(Score(9.0, 9.0), "end_stop"), scored(Score(10.0, 10.0), "coulomb")]
+    assert with_forecasts(search.calibrator, search.criteria, models, Score(left, left)) == models
+    assert ranked == ([("end_stop",), ("coulomb",)] if fitted else [])
 
 
 def simplest_far_off(models, before):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from flexarm_env.identify.calibrate.calibrator import Calibrator
+from flexarm_env.identify.replay.error_measure import Score
 from flexarm_env.identify.select.criteria import Criteria, Measure
 from flexarm_env.identify.select.model import Model
 
@@ -16,6 +17,19 @@ def best_of(criteria: Criteria, models: Sequence[Model]) -> Model | None:
         return None
     measure = criteria.measure([m.score for m in possible])
     return min(possible, key=lambda m: measure(m.score))
+
+
+def with_forecasts(calibrator: Calibrator, criteria: Criteria, models: Sequence[Model], best: Score) -> list[Model]:
+    """Fit the forecasts of models in processes where they are ranked by those, as with a best one of such a score."""
+    if not criteria.ranks_by_forecasts(best):
+        return list(models)
+    return list(calibrator.workers.map([(_with_forecast, (model,)) for model in models]))
+
+
+def _with_forecast(model: Model) -> Model:
+    """Fit the forecasts of a model, which then keeps their cost."""
+    _ = model.forecast_cost
+    return model
 
 
 def comes_near(criteria: Criteria, before: Model, model: Model, winner: Model, measure: Measure) -> bool:

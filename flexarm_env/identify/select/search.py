@@ -10,7 +10,7 @@ import numpy as np
 
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.progress import Progress
-from flexarm_env.identify.select.choose import best_of, comes_near, removes_enough, simplest
+from flexarm_env.identify.select.choose import best_of, comes_near, removes_enough, simplest, with_forecasts
 from flexarm_env.identify.select.criteria import Criteria, Measure
 from flexarm_env.identify.select.fits import fit_in_place
 from flexarm_env.identify.select.forecast_search import ForecastSearch
@@ -347,6 +347,7 @@ class Search:
     def _accept(self, trace: Trace, models: Sequence[Model], progress: Progress) -> Trace:
         """Accept the best model if it removes enough; the simplest of those that remove nearly as much."""
         measure, before = self.criteria.measure([m.score for m in models]), trace.model
+        models = with_forecasts(self.calibrator, self.criteria, models, min((m.score for m in models), key=measure))
         winner = simplest(self.calibrator, self.criteria, models, before, measure)
         if not removes_enough(self.criteria, before, winner, measure):
             return trace

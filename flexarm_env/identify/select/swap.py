@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.progress import Progress
+from flexarm_env.identify.select.choose import with_forecasts
 from flexarm_env.identify.select.criteria import Criteria, Measure
 from flexarm_env.identify.select.fits import fit_in_place
 from flexarm_env.identify.select.model import Model, judge
@@ -69,6 +70,7 @@ def compare_rivals(
         return RivalComparison(effect, now, {}, tried, untried)
     own = replace(now, effects=(effect,))
     measure = criteria.measure([own.score, *(m.score for m in rivals)])
+    own, *rivals = with_forecasts(calibrator, criteria, [own, *rivals], own.score)
     rank = criteria.rank(own.score, measure, dataset)
     rivals.sort(key=rank)
     rivals[0] = _polish_near(calibrator, rivals[0], own)
