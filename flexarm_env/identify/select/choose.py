@@ -20,7 +20,7 @@ def best_of(criteria: Criteria, models: Sequence[Model]) -> Model | None:
 
 
 def with_forecasts(calibrator: Calibrator, criteria: Criteria, models: Sequence[Model], best: Score) -> list[Model]:
-    """Fit the forecasts of models in processes where they are ranked by those, as with a best one of such a score."""
+    """Fit the forecasts of models in processes, where the score of the best one calls for a ranking by them."""
     if not criteria.ranks_by_forecasts(best):
         return list(models)
     return list(calibrator.workers.map([(_with_forecast, (model,)) for model in models]))
