@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import signal
 import subprocess
@@ -159,6 +160,29 @@ def test_a_stopped_program_leaves_one_line_and_no_process(tmp_path, number, code
     assert "Traceback" not in errors.decode()
     wait_for(lambda: not any(map(is_alive, helpers)), 10)
     assert not [helper for helper in helpers if is_alive(helper)]
+
+
+def test_a_stopped_program_ends_though_nobody_reads_what_it_still_says():
+    reading, writing = os.pipe()
+    os.set_blocking(writing, False)
+    with contextlib.suppress(BlockingIOError):
+        while True:
+            os.write(writing, b" ")
+    os.set_blocking(writing, True)
+    said = "print('still in the buffer'); print(file=sys.stderr, flush=True); time.sleep(100)"
+    imports = "import sys, time\nfrom flexarm_env.terminal.program import Program"
+    program = f"{imports}\ndef main(_): {said}\nsys.exit(Program('it')(main)())"
+    environment = os.environ | {"PYTHONPATH": str(PROJECT), "PYTHONUNBUFFERED": ""}
+    with subprocess.Popen([sys.executable, "-c", program], stderr=subprocess.PIPE, stdout=writing, env=environment) as run:
+        try:
+            run.stderr.readline()
+            run.send_signal(signal.SIGINT)
+            _, errors = run.communicate(timeout=20)
+        finally:
+            run.kill()
+            os.close(reading)
+            os.close(writing)
+    assert (run.returncode, errors.decode()) == (130, "it: stopped\n")
 
 
 def libraries(process: int) -> str:

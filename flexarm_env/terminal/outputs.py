@@ -112,11 +112,6 @@ def make_folder(folder: Path, *names: str) -> None:
     check_places(None, *(folder / name for name in names))
 
 
-def discard_stdout() -> None:
-    """Discard all output from now on, because the reader of stdout has left. Python would complain when it shuts down."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-
-
 def _plain(value: Any) -> Any:
     """Convert a value to JSON's types."""
     if isinstance(value, Mapping):

@@ -50,6 +50,7 @@ class Program:
                 return self.run(main, arguments)
             code = self.run(main, sys.argv[1:])
             if code in (STOPPED, TERMINATED):  # who cannot wait for the interpreter's end presses Ctrl-C again
+                discard_stdout()
                 sys.unraisablehook = lambda error: None
                 threading.excepthook = lambda error: None
                 for number in (signal.SIGINT, signal.SIGTERM):
@@ -75,11 +76,11 @@ class Program:
                 sys.stdout.flush()
                 return code
         except BaseException as error:
-            _empty_stdout()
             if came or isinstance(error, KeyboardInterrupt):
                 if not self.name:
                     print(file=sys.stderr)  # ends a line that showed the progress
                 return self.complain(self.stopped, TERMINATED if came[:1] == [signal.SIGTERM] else STOPPED)
+            _empty_stdout()
             if not isinstance(error, Exception):
                 raise
             return self._failed(error)
@@ -134,13 +135,16 @@ def refuse_empty(arguments: Sequence[str]) -> None:
 
 
 def _empty_stdout() -> None:
-    """Write what stdout still holds, and discard what cannot be written: Python would complain when it shuts down."""
+    """Write what stdout still holds, and discard what cannot be written."""
     try:
         sys.stdout.flush()
     except OSError:
-        from flexarm_env.terminal.outputs import discard_stdout
-
         discard_stdout()
+
+
+def discard_stdout() -> None:
+    """Discard all output from now on, where nobody reads it: Python would complain, or wait, when it shuts down."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
 @contextmanager

@@ -17,7 +17,7 @@ from flexarm_env.identify.results import Addition, Diagnosis, Fit
 from flexarm_env.pictures import words
 from flexarm_env.pictures.highlight import error_by_second
 from flexarm_env.pictures.words import NOTHING, PARTS, label_of, number, unit_of
-from flexarm_env.terminal.outputs import discard_stdout
+from flexarm_env.terminal.program import discard_stdout
 
 #: Width of a table in a file or a pipe.
 WIDE = 120
