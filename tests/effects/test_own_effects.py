@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import cloudpickle
 import pytest
+from soft_stop import soft_stop
 
 from flexarm_env.arm import Arm
 from flexarm_env.effects import catalogue
@@ -36,14 +37,11 @@ class Spring(Effect):
 
 
 def test_an_effect_of_one_s_own_joins_the_catalogue(tmp_path):
-    file = tmp_path / "mine.py"
-    file.write_text(OWN)
-    effect = load_effect(f"{file}:Spring")
-    known = catalogue().extended(effect)
-    assert "hard_spring" in known
-    assert "hard_spring" not in catalogue()
+    known = catalogue().extended(soft_stop(tmp_path))
+    assert "soft_stop" in known
+    assert "soft_stop" not in catalogue()
     mine = replace(Arm.load("thesis-fem"), known=known)
-    runs = [simulate(a, "pulse", duration=2.0, noise=False) for a in (mine, mine.with_effect("hard_spring"))]
+    runs = [simulate(a, "pulse", duration=2.0, noise=False) for a in (mine, mine.with_effect("soft_stop"))]
     ends = [run.signals["arm_angle"][-1] for run in runs]
     assert ends[1] < ends[0] - 0.1
     # Its module is the file: the catalogue's own files are named as their effects are.

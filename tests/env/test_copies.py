@@ -16,9 +16,9 @@ import numpy as np
 import pytest
 from env_steps import TROUBLE, actions, same, steps_of, steps_of_all, steps_of_many
 from gymnasium.vector import AsyncVectorEnv, AutoresetMode
+from soft_stop import soft_stop
 
 from flexarm_env import Arm, catalogue
-from flexarm_env.effects.catalogue import load_effect
 from flexarm_env.env import FlexArmEnv
 from flexarm_env.registration import IDS
 from flexarm_env.tasks import COMMON_TERMS, RewardTerm, Task
@@ -175,27 +175,8 @@ def test_processes_of_gymnasium_step_what_they_are_sent() -> None:
     assert same([one[0] for one in seen], here)
 
 
-OWN_EFFECT = '''
-from flexarm_env.effects import Effect
-from flexarm_env.parameters import Parameter
-
-class Magnet(Effect):
-    """A magnet beside the bench."""
-
-    name = "magnet"
-    equation = "tau = -size angle"
-    parameters = {"size": Parameter("N*m/rad", 0.0, 10.0, 0.5, null=0.0, meaning="torque per angle")}
-    looks_like = "the hub is pulled back"
-
-    @staticmethod
-    def torque(angle, size):
-        return -size * angle
-'''
-
-
 @pytest.mark.slow(minutes=2)
 def test_an_arm_with_an_effect_of_ones_own_goes_on_in_a_new_process(tmp_path: Path) -> None:
-    (tmp_path / "magnet.py").write_text(OWN_EFFECT)
-    known = catalogue().extended(load_effect(f"{tmp_path / 'magnet.py'}:Magnet"))
-    env = gym.make("FlexArm/Damp-v0", arm=Arm.load("thesis", known).with_effect("magnet", size=2.0))
+    known = catalogue().extended(soft_stop(tmp_path))
+    env = gym.make("FlexArm/Damp-v0", arm=Arm.load("thesis", known).with_effect("soft_stop", stiffness=2.0, start=0.0))
     check_in_a_new_process(tmp_path, env, None, None, actions(60, 1))

@@ -102,7 +102,7 @@ def test_practice(measurements, case):
 def test_effects_that_differ_only_at_rest_are_told_apart(setting, effect):
     recordings = []
     for name in ("pulse", "square"):
-        made = rig.simulate({setting: 0.01}, name, seed=7)
+        made = rig.simulate({setting: 0.01}, name, seed=7, duration=6.0)
         signals = {signal: made[signal] for signal in ("arm_angle", "motor_speed", "strain_mid", "strain_base")}
         recordings.append(Recording.from_arrays(name, made["time"], "current", made["current"], signals))
     found = diagnose(Arm.load("thesis-fem"), recordings)
