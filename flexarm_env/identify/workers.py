@@ -7,6 +7,7 @@ import os
 import signal
 import threading
 import time
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass, field
@@ -26,6 +27,8 @@ from flexarm_env.identify.threads import threads
 Task = tuple[Callable[..., Any], tuple[Any, ...]]
 #: Time [s] between looks whether the process that started this one is still there.
 LOOK = 0.5
+#: How joblib's warning begins that it replaces a process, one that grew by some 300 MB.
+REPLACED = "A worker stopped while some jobs were given to the executor"
 
 
 @dataclass(frozen=True)
@@ -82,6 +85,8 @@ class Workers:
                     result = function(*arguments)
                 yield result
             return
+        # It warns in a thread of its own, which would die where warnings are errors, and the results would never come.
+        warnings.filterwarnings("ignore", REPLACED, UserWarning)
         calls = (delayed(function)(*arguments) for function, arguments in tasks)
         watched = {"batch_size": self.batch, "initializer": _end_with, "initargs": (os.getpid(),)}
         with ExitStack() as interrupts:

@@ -30,6 +30,19 @@ def work(numbers):
 list(Workers(3).map([(work, (np.zeros(10**6),))] * 2))
 """
 PATIENCE = 30.0
+#: With psutil joblib looks at a process's memory each second, and replaces one that grew by more than 300 MB.
+GROWING = """
+import time
+import numpy as np
+from flexarm_env.identify.workers import Workers
+
+def grow(number):
+    vars(time).setdefault("kept", []).append(np.ones(6 * 10**7))
+    time.sleep(1.1)
+    return number
+
+print(*Workers(2, batch=1).map([(grow, (number,)) for number in range(8)]))
+"""
 
 
 @LISTED
@@ -54,6 +67,13 @@ def test_a_killed_worker_is_one_line():
     with pytest.raises(InputError, match=r"a worker process was killed; was there memory enough\? try --jobs 1$"):
         list(Workers(2).map([(signal.raise_signal, (signal.SIGKILL,))] * 2))
     assert list(Workers(2).map([(abs, (-1,)), (abs, (-2,))])) == [1, 2]
+
+
+def test_a_worker_that_grew_is_replaced_though_warnings_are_errors():
+    pytest.importorskip("psutil")
+    program = [sys.executable, "-W", "error::UserWarning", "-c", GROWING]
+    run = subprocess.run(program, capture_output=True, text=True, timeout=PATIENCE, check=True)
+    assert (run.stdout, run.stderr) == ("0 1 2 3 4 5 6 7\n", "")
 
 
 @pytest.mark.parametrize("jobs", [0, -1, True, 1.0, "2", None])
