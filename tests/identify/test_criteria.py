@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import pytest
+from searches import far_off, scored
 
 from flexarm_env import Arm, Recording, diagnose, simulate
+from flexarm_env.identify.replay.error_measure import Score
 from flexarm_env.identify.select.criteria import Measure, ThresholdCriteria
 from flexarm_env.identify.select.model import Model
+from flexarm_env.identify.settings import SETTINGS
 
 
 @dataclass(frozen=True)
@@ -65,3 +68,17 @@ def test_criteria_that_never_accept_name_nothing(nominal, recording):
     assert "accept" not in [step["action"] for step in found.trace]
     assert found.ranking[0].gain > 0.9
     assert not any(candidate.accepted for candidate in found.ranking)
+
+
+@pytest.mark.parametrize(("left", "compares"), [(Score(8.9, 19.0), True), (Score(20.0, 200.0), False), (Score(2.9, 300.0), True)])
+def test_rivals_are_compared_far_off_only_where_most_is_explained(left, compares):
+    assert far_off().criteria.can_compare_rivals(scored(left)) == compares
+
+
+@pytest.mark.parametrize(("whole_run", "verdict"), [(60.0, "effects"), (258.0, "effects"), (470.0, "unknown")])
+def test_where_torque_noise_is_stated_effects_that_worsen_whole_runs_are_not_named(whole_run, verdict):
+    """Hidden effects that were found on a pendulum under such noise left less than a tenth of the error of whole runs."""
+    names = ("tach_filter", "cable_stiffness")
+    found = scored(Score(1.04, whole_run), *names)
+    criteria = ThresholdCriteria(Score(3.3, 250.0), Score(1.52, 250.0), False, SETTINGS)
+    assert criteria.verdict(names, scored(Score(1.52, 250.0)), found) == verdict
