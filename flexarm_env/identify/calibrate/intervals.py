@@ -1,4 +1,4 @@
-"""Intervals of calibrated values: scatter of the fit, common scale of forces, and bias by what is unexplained."""
+"""Intervals of calibrated values: scatter of the fit, shift on new data, and the exactness that no model exceeds."""
 
 from __future__ import annotations
 
@@ -9,10 +9,12 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibration import Calibration
-from flexarm_env.identify.calibrate.common_scale import beside_scale, force_powers, scale_deviation
+from flexarm_env.identify.calibrate.common_scale import force_powers, scale_deviation
 from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.calibrate.least_squares import covariance, slopes
 from flexarm_env.identify.calibrate.parameters import FitParameter
+from flexarm_env.identify.replay.readings import rms_of
+from flexarm_env.identify.settings import LEAST_NORM
 
 Floats = NDArray[np.float64]
 
@@ -20,8 +22,8 @@ Floats = NDArray[np.float64]
 def estimates(calibration: Calibration, nominal: Arm) -> list[Estimate]:
     """Estimate every fitted value with its 90 % interval.
 
-    The standard deviation holds the scatter of the fit (sandwich), the common scale of forces, and, by the share of the errors
-    that is unexplained, how far the value moved when the held-out part came in and the exactness of a wrong model.
+    The standard deviation holds the scatter of the fit (sandwich), how far the value moved when the held-out part came in, and
+    the exactness that no model exceeds.
 
     Args:
         calibration: of the arm.
@@ -32,9 +34,9 @@ def estimates(calibration: Calibration, nominal: Arm) -> list[Estimate]:
     numbers = objective.dataset.settings.intervals
     powers = force_powers(calibration.arm, parameters)
     variance = _scatter(calibration, powers) + (0.0 if calibration.moved is None else calibration.moved**2)
-    objective = replace(objective, weights=replace(objective.weights, sigma=calibration.rms_errors, prior=parameters.priors))
+    objective = replace(objective, weights=replace(objective.weights, sigma=_left_by(calibration), prior=parameters.priors))
     common = scale_deviation(objective, x, powers)
-    relative = np.hypot(np.sqrt(calibration.unexplained) * numbers.wrong_model, common * np.abs(powers))
+    relative = np.hypot(numbers.best_model, common * np.abs(powers))
     sizes = [abs(p.value(v)) / p.scale if p.scale else 1.0 for p, v in parameters.pairs(x)]
     least = relative * np.array(sizes)
     sigma = np.sqrt(variance + np.square(least))
@@ -51,6 +53,17 @@ def _estimate(parameter: FitParameter, x: float, half_width: float, nominal: Arm
     return Estimate(parameter.path, parameter.value(x), low, high, unit, before)
 
 
+def _left_by(calibration: Calibration) -> Floats:
+    """Compute the rms error (runs, signals) that a calibration leaves, at least the noise."""
+    objective, left = calibration.objective, []
+    errors = calibration.solution.residual * objective.rows_of(objective.weights.sigma)
+    for run in objective.dataset.fitted:
+        count = run.measured.size
+        left.append(rms_of(errors[:count].reshape(run.measured.shape), run.measured))
+        errors = errors[count:]
+    return np.maximum(np.array(left), objective.dataset.noise)
+
+
 def _scatter(calibration: Calibration, powers: NDArray[np.int64]) -> Floats:
     """Estimate the variance of each x (x,) from the residual, weighed by what is left, but for the common scale of forces.
 
@@ -60,14 +73,15 @@ def _scatter(calibration: Calibration, powers: NDArray[np.int64]) -> Floats:
     objective, solution = calibration.objective, calibration.solution
     settings, x, prior = objective.dataset.settings, solution.x, objective.parameters.priors
     block = max(int(settings.intervals.block / objective.dataset.interval), 1) * len(objective.dataset.signals)
-    beside = beside_scale(powers, prior)
+    onto_scale = powers / prior**2
+    rest = np.eye(len(x)) - np.outer(powers, onto_scale) / max(float(onto_scale @ powers), LEAST_NORM)
     narrow = calibration.narrow
     if narrow is None:
         narrow = slopes(objective.residuals, x, solution.residual, np.full(len(x), settings.refining.difference))
-    by_left = objective.rows_of(objective.weights.sigma / calibration.rms_errors)
+    by_left = objective.rows_of(objective.weights.sigma / _left_by(calibration))
     variances = []
     for changes in (solution.jacobian, narrow):
         spread = covariance(changes * by_left[:, None], solution.residual * by_left, prior, block)
-        variances.append(np.diag(beside @ spread @ beside.T))
+        variances.append(np.diag(rest @ spread @ rest.T))
     largest: Floats = np.maximum.reduce([*variances, np.zeros(len(x))])
     return largest
