@@ -85,7 +85,7 @@ class Workers:
                     result = function(*arguments)
                 yield result
             return
-        # It warns in a thread of its own, which would die where warnings are errors, and the results would never come.
+        # joblib warns in the thread that brings results: where warnings are errors it would die, and none would ever come.
         warnings.filterwarnings("ignore", REPLACED, UserWarning)
         calls = (delayed(function)(*arguments) for function, arguments in tasks)
         watched = {"batch_size": self.batch, "initializer": _end_with, "initargs": (os.getpid(),)}

@@ -72,7 +72,7 @@ def test_a_killed_worker_is_one_line():
 def test_a_worker_that_grew_is_replaced_though_warnings_are_errors():
     pytest.importorskip("psutil")
     program = [sys.executable, "-W", "error::UserWarning", "-c", GROWING]
-    run = subprocess.run(program, capture_output=True, text=True, timeout=PATIENCE, check=True)
+    run = subprocess.run(program, capture_output=True, text=True, timeout=4.0 * PATIENCE, check=True)
     assert (run.stdout, run.stderr) == ("0 1 2 3 4 5 6 7\n", "")
 
 
