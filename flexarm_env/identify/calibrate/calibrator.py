@@ -248,8 +248,10 @@ class Calibrator:
         steps, ending = found.solution.steps, Ending(iterations, numbers.final_tolerance)
         solution = minimise(objective.residuals, x, prior, steps, self.settings.least_squares, ending)
         refined = refine(objective, solution.x)
-        moved, at = np.hypot(solution.x - x, refined.scatter), replace(solution, x=refined.x, residual=refined.residual)
-        again = Calibration(parameters.apply(found.arm, refined.x), at, objective, moved, refined.jacobian)
+        at = replace(solution, x=refined.x, residual=refined.residual)
+        again = Calibration(parameters.apply(found.arm, refined.x), at, objective, narrow=refined.jacobian)
+        shift = np.sqrt(again.unexplained) * (solution.x - x)
+        again = replace(again, moved=np.hypot(shift, refined.scatter))
         before, after = (self._error_on_all_data(arm) for arm in (found.arm, again.arm))
         errors, worse = self.settings.errors, 1.0 + self.settings.selecting.noticed
         if after <= errors.explained or (before > errors.explained and after <= worse * before):

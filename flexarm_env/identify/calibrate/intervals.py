@@ -1,4 +1,4 @@
-"""Intervals of calibrated values: scatter of the fit, shift on new data, and the exactness that no model exceeds."""
+"""Intervals of calibrated values: scatter of the fit, common scale of forces, and bias by what is unexplained."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from flexarm_env.identify.calibrate.common_scale import force_powers, scale_devi
 from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.calibrate.least_squares import covariance, slopes
 from flexarm_env.identify.calibrate.parameters import FitParameter
-from flexarm_env.identify.replay.readings import rms_of
 from flexarm_env.identify.settings import LEAST_NORM
 
 Floats = NDArray[np.float64]
@@ -22,8 +21,8 @@ Floats = NDArray[np.float64]
 def estimates(calibration: Calibration, nominal: Arm) -> list[Estimate]:
     """Estimate every fitted value with its 90 % interval.
 
-    The standard deviation holds the scatter of the fit (sandwich), how far the value moved when the held-out part came in, and
-    the exactness that no model exceeds.
+    The standard deviation holds the scatter of the fit (sandwich), the common scale of forces, and, by the share of the errors
+    that is unexplained, how far the value moved when the held-out part came in and the exactness of a wrong model.
 
     Args:
         calibration: of the arm.
@@ -34,9 +33,9 @@ def estimates(calibration: Calibration, nominal: Arm) -> list[Estimate]:
     numbers = objective.dataset.settings.intervals
     powers = force_powers(calibration.arm, parameters)
     variance = _scatter(calibration, powers) + (0.0 if calibration.moved is None else calibration.moved**2)
-    objective = replace(objective, weights=replace(objective.weights, sigma=_left_by(calibration), prior=parameters.priors))
+    objective = replace(objective, weights=replace(objective.weights, sigma=calibration.rms_errors, prior=parameters.priors))
     common = scale_deviation(objective, x, powers)
-    relative = np.hypot(numbers.best_model, common * np.abs(powers))
+    relative = np.hypot(np.sqrt(calibration.unexplained) * numbers.wrong_model, common * np.abs(powers))
     sizes = [abs(p.value(v)) / p.scale if p.scale else 1.0 for p, v in parameters.pairs(x)]
     least = relative * np.array(sizes)
     sigma = np.sqrt(variance + np.square(least))
@@ -53,17 +52,6 @@ def _estimate(parameter: FitParameter, x: float, half_width: float, nominal: Arm
     return Estimate(parameter.path, parameter.value(x), low, high, unit, before)
 
 
-def _left_by(calibration: Calibration) -> Floats:
-    """Compute the rms error (runs, signals) that a calibration leaves, at least the noise."""
-    objective, left = calibration.objective, []
-    errors = calibration.solution.residual * objective.rows_of(objective.weights.sigma)
-    for run in objective.dataset.fitted:
-        count = run.measured.size
-        left.append(rms_of(errors[:count].reshape(run.measured.shape), run.measured))
-        errors = errors[count:]
-    return np.maximum(np.array(left), objective.dataset.noise)
-
-
 def _scatter(calibration: Calibration, powers: NDArray[np.int64]) -> Floats:
     """Estimate the variance of each x (x,) from the residual, weighed by what is left, but for the common scale of forces.
 
@@ -78,7 +66,7 @@ def _scatter(calibration: Calibration, powers: NDArray[np.int64]) -> Floats:
     narrow = calibration.narrow
     if narrow is None:
         narrow = slopes(objective.residuals, x, solution.residual, np.full(len(x), settings.refining.difference))
-    by_left = objective.rows_of(objective.weights.sigma / _left_by(calibration))
+    by_left = objective.rows_of(objective.weights.sigma / calibration.rms_errors)
     variances = []
     for changes in (solution.jacobian, narrow):
         spread = covariance(changes * by_left[:, None], solution.residual * by_left, prior, block)

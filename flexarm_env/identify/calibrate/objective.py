@@ -127,8 +127,8 @@ class Objective:
         """
         dataset = self.dataset
         sigma, noise = self.rms_errors_of(arm), self._noise_of(arm)
-        unexplained = max(1.0 - 1.0 / float(np.mean((sigma / noise) ** 2)), 0.0) if narrow_priors else 0.0
-        together = 1.0 + unexplained * max(dataset.settings.calibrating.memory / dataset.interval - 1.0, 0.0)
+        share = unexplained_share(sigma / noise) if narrow_priors else 0.0
+        together = 1.0 + share * max(dataset.settings.calibrating.memory / dataset.interval - 1.0, 0.0)
         narrower = np.array([np.sqrt(together) if p.is_constant else 1.0 for p in self.parameters])
         return replace(self, weights=Weights(sigma, self.parameters.priors / narrower, noise))
 
@@ -159,12 +159,15 @@ class Objective:
         """The rms of the weights over what noise alone leaves: 1 where errors are weighed by that alone."""
         return float(np.sqrt(np.mean((self.weights.sigma / self.weights.noise) ** 2)))
 
-    def square_over_noise(self, residual: Floats) -> float:
-        """Compute the mean square of the errors of a residual (rows,) over what noise alone leaves, all signals alike."""
+    def rms_errors_in(self, residual: Floats) -> Floats:
+        """Compute the rms error (runs, signals) in a residual (rows,), at least the noise."""
         ends = np.cumsum([run.measured.size for run in self.dataset.fitted])[:-1]
         triples = zip(np.split(residual, ends), self.dataset.fitted, self.weights.sigma, strict=True)
-        errors = [part.reshape(run.measured.shape) * sigma for part, run, sigma in triples]
-        return float(np.mean((self._rms(errors) / self.weights.noise) ** 2))
+        return self._rms([part.reshape(run.measured.shape) * sigma for part, run, sigma in triples])
+
+    def square_over_noise(self, residual: Floats) -> float:
+        """Compute the mean square of the errors of a residual (rows,) over what noise alone leaves, all signals alike."""
+        return float(np.mean((self.rms_errors_in(residual) / self.weights.noise) ** 2))
 
     def rows_of(self, sigma: Floats) -> Floats:
         """Repeat numbers (runs, signals) for each row of the residual (rows,)."""
@@ -194,6 +197,11 @@ class Objective:
         if not error_measure(arm).judges_free_run:
             errors[: round(dataset.settings.preparation.settling / dataset.interval)] = 0.0
         return errors
+
+
+def unexplained_share(errors: Floats) -> float:
+    """Compute the share of squared errors, over the noise, that noise does not explain: 0 for errors of its size."""
+    return max(1.0 - 1.0 / float(np.mean(errors**2)), 0.0)
 
 
 def objective_at(arm: Arm, dataset: Dataset, parameters: FitParameters, torque_noise: float, reduced: bool = False) -> Objective:

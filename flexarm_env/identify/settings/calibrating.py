@@ -152,5 +152,5 @@ class Intervals:
     """How 90 % intervals are made."""
 
     quantile: float = tuned(1.6449, "Two-sided 90 % quantile of the normal distribution.", "the normal distribution")
-    best_model: float = tuned(0.005, "Relative standard deviation that no value beats: no model is more exact.")
+    wrong_model: float = tuned(0.005, "Relative standard deviation of a value of a model that explains little of the errors.")
     block: float = tuned(0.25, "Length of the blocks over which residuals may be correlated.", unit="s")
