@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from flexarm_env import Arm, simulate
+from flexarm_env.identify.calibrate import refine as module
 from flexarm_env.identify.calibrate.common_scale import best_scale, force_power, force_powers, rescale, scale_deviation
 from flexarm_env.identify.calibrate.least_squares import cost_of, one_by_one
 from flexarm_env.identify.calibrate.objective import Objective, objective_at
 from flexarm_env.identify.calibrate.parameters import FitParameters, free_parameters
-from flexarm_env.identify.calibrate.refine import gauss_newton, refine
+from flexarm_env.identify.calibrate.refine import Refined, gauss_newton, refine
+from flexarm_env.identify.calibrate.refine import _End as End
 from flexarm_env.identify.replay.dataset import Dataset, prepare
 from flexarm_env.identify.settings import SETTINGS
 
@@ -139,3 +141,23 @@ def test_a_fit_that_ends_in_a_hollow_finds_the_next(seed, wrong):
     found = refine(problem, x + widths * np.random.default_rng(seed).standard_normal(len(x))).x
     after, true = (cost_of(problem.residual(at), at, problem.weights.prior) for at in (found, x))
     assert after <= true
+
+
+@pytest.mark.parametrize(("rough", "counts"), [(1.0005, [0.0, 0.02]), (1.005, [0.0, 0.02, 0.06]), (1.02, [0.0, 0.06])])
+def test_values_are_as_uncertain_as_minima_alike_scatter(monkeypatch, rough, counts):
+    """Those of much larger errors are left out, and where two differ a third is sought."""
+    problem, x, powers = problem_of()
+    along = np.where(powers == 0, problem.weights.prior, 0.0)
+    ends = iter([(0.0, 1.0), (0.02, rough), (0.06, 1.0)])
+
+    def descend(objective, start, levels):
+        away, error = next(ends)
+        jacobian = np.eye(len(problem.residual(x)), len(x))
+        found = Refined(x + away * along, error * problem.residual(x), error**2, jacobian)
+        return [End(objective, found)] * (1 + bool(levels))
+
+    monkeypatch.setattr(module, "_descend", descend)
+    monkeypatch.setattr(module, "_along_scale", lambda objective, found, powers: found)
+    found = refine(problem, x)
+    np.testing.assert_array_equal(found.x, x)
+    np.testing.assert_allclose(found.scatter, np.std(counts, ddof=1) * along, atol=1e-12)

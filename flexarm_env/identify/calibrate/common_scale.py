@@ -15,6 +15,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.least_squares import cost_of
 from flexarm_env.identify.calibrate.objective import Objective
 from flexarm_env.identify.calibrate.parameters import FitParameters
+from flexarm_env.identify.settings import LEAST_NORM
 
 Floats = NDArray[np.float64]
 
@@ -37,6 +38,12 @@ def rescale(parameters: FitParameters, x: Floats, powers: NDArray[np.int64], shi
     """Multiply all quantities that scale with forces by exp(shift)."""
     triples = zip(parameters, x, powers, strict=True)
     return np.array([p.x_of(p.value(float(v)) * np.exp(power * shift)) if power else v for p, v, power in triples])
+
+
+def beside_scale(powers: NDArray[np.int64], prior: Floats) -> Floats:
+    """Make the matrix (x, x) that takes the common scale out of a change of x, by the priors' weights."""
+    onto_scale = powers / prior**2
+    return np.eye(len(prior)) - np.outer(powers, onto_scale) / max(float(onto_scale @ powers), LEAST_NORM)
 
 
 def best_scale(objective: Objective, x: Floats, powers: NDArray[np.int64]) -> tuple[Floats, float]:

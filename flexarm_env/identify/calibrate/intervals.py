@@ -9,11 +9,10 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibration import Calibration
-from flexarm_env.identify.calibrate.common_scale import force_powers, scale_deviation
+from flexarm_env.identify.calibrate.common_scale import beside_scale, force_powers, scale_deviation
 from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.calibrate.least_squares import covariance, slopes
 from flexarm_env.identify.calibrate.parameters import FitParameter
-from flexarm_env.identify.settings import LEAST_NORM
 
 Floats = NDArray[np.float64]
 
@@ -61,8 +60,7 @@ def _scatter(calibration: Calibration, powers: NDArray[np.int64]) -> Floats:
     objective, solution = calibration.objective, calibration.solution
     settings, x, prior = objective.dataset.settings, solution.x, objective.parameters.priors
     block = max(int(settings.intervals.block / objective.dataset.interval), 1) * len(objective.dataset.signals)
-    onto_scale = powers / prior**2
-    rest = np.eye(len(x)) - np.outer(powers, onto_scale) / max(float(onto_scale @ powers), LEAST_NORM)
+    beside = beside_scale(powers, prior)
     narrow = calibration.narrow
     if narrow is None:
         narrow = slopes(objective.residuals, x, solution.residual, np.full(len(x), settings.refining.difference))
@@ -70,6 +68,6 @@ def _scatter(calibration: Calibration, powers: NDArray[np.int64]) -> Floats:
     variances = []
     for changes in (solution.jacobian, narrow):
         spread = covariance(changes * by_left[:, None], solution.residual * by_left, prior, block)
-        variances.append(np.diag(rest @ spread @ rest.T))
+        variances.append(np.diag(beside @ spread @ beside.T))
     largest: Floats = np.maximum.reduce([*variances, np.zeros(len(x))])
     return largest

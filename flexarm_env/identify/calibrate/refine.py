@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from flexarm_env.identify.calibrate.common_scale import best_scale, force_powers
+from flexarm_env.identify.calibrate.common_scale import best_scale, beside_scale, force_powers
 from flexarm_env.identify.calibrate.least_squares import Residuals, cost_of, secant_correction, slopes
 from flexarm_env.identify.calibrate.objective import Objective, objective_at
 from flexarm_env.identify.replay.scales import torque_scale
@@ -88,9 +88,9 @@ def _step(residuals: Residuals, here: Refined, prior: Floats, numbers: Refining)
 def refine(objective: Objective, x: Floats) -> Refined:
     """Move x to the best common scale and, where the model lacks nothing, on along weakly observable directions.
 
-    A replay is rough along those directions, and a fit ends in a local minimum. One that is higher than x is not the last:
-    another is sought from x itself. One that leaves more than the corrected replay before it is not, either: two more are
-    sought from some way to either side.
+    A replay is rough along those directions, and a fit ends in a local minimum. So two are sought: through corrected replays, and
+    from x itself. Where they differ, another is sought through corrected replays. Where the best still leaves more than a
+    corrected replay, two more are sought from some way to either side.
 
     Args:
         objective: weighted by the errors where the fit ended, at the arm's own torque noise.
@@ -102,17 +102,22 @@ def refine(objective: Objective, x: Floats) -> Refined:
     x, _ = best_scale(objective, x, powers)
     if not len(x) or objective.excess_factor > errors.close:
         return _at(objective, x, None)
-    *smooth, best = ends = _descend(objective, x, process_noise.refinement)
-    if smooth and best.found.cost > _at(objective, x, None).cost:
-        best = _descend(objective, x, ())[-1]
-        ends.append(best)
-    if smooth and best.error > errors.converged * min(end.error for end in smooth):
+    *smooth, first = _descend(objective, x, process_noise.refinement)
+    if not smooth:
+        return _along_scale(objective, first.found, powers)
+    ends = [first, *_descend(objective, x, ())]
+    if max(end.error for end in ends) > errors.converged * _best(ends).error:
+        *_, again = _descend(objective, first.found.x, process_noise.refinement)
+        ends.append(again)
+    best = _best(ends)
+    if best.error > errors.converged * min(end.error for end in smooth):
         aside = dataset.settings.refining.aside * objective.weights.prior * smooth[0].weakest_direction
         starts = (best.found.x - aside, best.found.x + aside)
         ends += [_descend(objective, start, process_noise.refinement_aside)[-1] for start in starts]
-    minima = [end.found for end in ends if end.level is objective]
-    found = _along_scale(objective, min(minima, key=lambda end: end.cost), powers)
-    return replace(found, scatter=np.std([end.x for end in minima], axis=0))
+        best = _best(ends)
+    alike = [end.found.x for end in ends if end.error <= dataset.settings.refining.alike * best.error]
+    scatter = np.std(alike @ beside_scale(powers, objective.weights.prior).T, axis=0, ddof=1) if len(alike) > 1 else 0.0
+    return replace(_along_scale(objective, best.found, powers), scatter=scatter)
 
 
 def _along_scale(objective: Objective, found: Refined, powers: NDArray[np.int64]) -> Refined:
@@ -160,6 +165,10 @@ class _End:
         j -= np.outer(j @ onto_scale, onto_scale) / max(length**2, LEAST_NORM)
         _, axes = np.linalg.eigh(j.T @ j)
         return axes[:, 1 if length and len(prior) > 1 else 0]  # the scale itself comes first
+
+
+def _best(ends: Sequence[_End]) -> _End:
+    return min(ends, key=lambda end: end.found.cost)
 
 
 def _descend(objective: Objective, x: Floats, levels: Sequence[float]) -> list[_End]:

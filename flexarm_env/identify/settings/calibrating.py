@@ -130,6 +130,11 @@ class Refining:
         "Distance to either side at which other minima are sought, in priors' standard deviations.",
         "26 null machines of seeds 2 and 3 then ended at 0.994 to 1.005 times the noise, before at 1.004 to 1.05",
     )
+    alike: float = tuned(
+        1.01,
+        "Error over the least one's up to which another minimum shows how far values scatter.",
+        "19 null machines of seed 982130: 1.01 to 1.05 give the same, 1.005 less; steps that end early lie beyond",
+    )
     scale_step: float = tuned(0.02, "Step of the logarithm of the common scale.", SCALES_OF_NULLS)
     scale_furthest: float = tuned(0.5, "Furthest that the logarithm of the common scale moves at once.", SCALES_OF_NULLS)
 
