@@ -21,7 +21,8 @@ def estimates(calibration: Calibration, nominal: Arm) -> list[Estimate]:
     """Estimate every fitted value with its 90 % interval.
 
     The standard deviation holds the scatter of the fit (sandwich), the common scale of forces, and, by the share of the errors
-    that is unexplained, how far the value moved when the held-out part came in and the exactness of a wrong model.
+    that is unexplained, how far the value moved when the held-out part came in and the exactness of a wrong model; besides, the
+    exactness that no model exceeds.
 
     Args:
         calibration: of the arm.
@@ -34,7 +35,8 @@ def estimates(calibration: Calibration, nominal: Arm) -> list[Estimate]:
     variance = _scatter(calibration, powers) + (0.0 if calibration.moved is None else calibration.moved**2)
     objective = replace(objective, weights=replace(objective.weights, sigma=calibration.rms_errors, prior=parameters.priors))
     common = scale_deviation(objective, x, powers)
-    relative = np.hypot(np.sqrt(calibration.unexplained) * numbers.wrong_model, common * np.abs(powers))
+    bias = np.hypot(numbers.best_model, np.sqrt(calibration.unexplained) * numbers.wrong_model)
+    relative = np.hypot(bias, common * np.abs(powers))
     sizes = [abs(p.value(v)) / p.scale if p.scale else 1.0 for p, v in parameters.pairs(x)]
     least = relative * np.array(sizes)
     sigma = np.sqrt(variance + np.square(least))

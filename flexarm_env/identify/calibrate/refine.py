@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from flexarm_env.identify.calibrate.common_scale import best_scale, beside_scale, force_powers
+from flexarm_env.identify.calibrate.common_scale import beside_scale, best_scale, force_powers
 from flexarm_env.identify.calibrate.least_squares import Residuals, cost_of, secant_correction, slopes
 from flexarm_env.identify.calibrate.objective import Objective, objective_at
 from flexarm_env.identify.replay.scales import torque_scale

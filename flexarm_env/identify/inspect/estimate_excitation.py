@@ -121,9 +121,10 @@ def _deviations(base: Baseline, slopes: Floats, along: Along) -> Floats:
 def _constant(arm: Arm, parameter: FitParameter, prior: float, posterior: float, settings: Settings) -> ConstantExcitation:
     value = arm.value(parameter.path)
     per_x = parameter.scale or abs(value)
+    best = settings.intervals.best_model * abs(value) / per_x
     width = settings.intervals.quantile * per_x
     state = SHOWN if posterior <= settings.excitation.shown * prior else NOT_SHOWN
-    half_width = width * min(posterior, prior)
+    half_width = width * min(math.hypot(posterior, best), prior)
     return ConstantExcitation(parameter.path, value, half_width, width * prior, arm.parameter(parameter.path).unit, state)
 
 
