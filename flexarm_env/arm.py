@@ -9,12 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flexarm_env.arm_file import arm_from_table, read_arm
+from flexarm_env.arm_sections import SECTIONS
 from flexarm_env.arm_text import write_arm
 from flexarm_env.control.law import ControlLaw
 from flexarm_env.display import Shown
 from flexarm_env.effects import Catalogue, Effect, catalogue
 from flexarm_env.errors import InputError, did_you_mean
-from flexarm_env.parameters import INPUTS, NEEDS, SECTIONS, Parameter, read_value, reading_noise
+from flexarm_env.parameters import INPUTS, NEEDS, Parameter, read_value, reading_noise
 from flexarm_env.sensors import Sensor, known_sensors
 
 if TYPE_CHECKING:

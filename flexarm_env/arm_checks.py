@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from flexarm_env.arm_sections import DEFAULTS
 from flexarm_env.errors import InputError
-from flexarm_env.parameters import DEFAULTS, NEEDS
+from flexarm_env.parameters import NEEDS
 
 if TYPE_CHECKING:
     from flexarm_env.arm import Arm

@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flexarm_env.arm_checks import check_constants, check_controller, check_link, check_needs
+from flexarm_env.arm_sections import LEVEL, SECTIONS, defaults_of
 from flexarm_env.control.table import law_from_table
 from flexarm_env.effects import Catalogue
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.files import read_toml
-from flexarm_env.parameters import INPUTS, LEVEL, SECTIONS, defaults_of, read_value
+from flexarm_env.parameters import INPUTS, read_value
 from flexarm_env.recordings.checks import check_conditions
 from flexarm_env.recordings.conditions import CONDITIONS
 from flexarm_env.recordings.messages import file_error

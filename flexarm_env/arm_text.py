@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from flexarm_env.arm_file import AUTO
+from flexarm_env.arm_sections import SECTIONS, defaults_of
 from flexarm_env.control.table import law_table
 from flexarm_env.files import write_whole
-from flexarm_env.parameters import SECTIONS, Parameter, defaults_of
+from flexarm_env.parameters import Parameter
 
 if TYPE_CHECKING:
     from tomlkit.items import Table

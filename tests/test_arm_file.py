@@ -14,10 +14,11 @@ import pytest
 
 from flexarm_env.arm import Arm
 from flexarm_env.arm_file import shipped_arms
+from flexarm_env.arm_sections import SENSOR
 from flexarm_env.arm_text import arm_text
 from flexarm_env.effects import Catalogue, Effect, catalogue
 from flexarm_env.errors import InputError
-from flexarm_env.parameters import SENSOR, Parameter
+from flexarm_env.parameters import Parameter
 
 #: Units that a parameter of one's own effect may have, as hard to read back as pint allows.
 UNITS = ("1/rad", "1 / s", "1/rad**2", "rad/(N*m)", "N*m/(rad/s)**2", "(N*m)**0.5", "V/s", "m s^-2", "Ω", "%", "")

@@ -29,6 +29,7 @@ LAYERS = (
         "arm",
         "arm_checks",
         "arm_file",
+        "arm_sections",
         "arm_text",
         "machine",
         "plant",
@@ -54,7 +55,7 @@ USERS = RANK["terminal"]
 # Beyond the layers: recordings know no arm, identify never sees the env, and controllers see observations only (and the arm
 # that they believe in).
 NEVER = {
-    "recordings": {"arm", "arm_checks", "arm_file", "arm_text", "machine", "plant", "effects", "linear"},
+    "recordings": {"arm", "arm_checks", "arm_file", "arm_sections", "arm_text", "machine", "plant", "effects", "linear"},
     "experiments": {"env", "tasks", "render"},
     "identify": {"env", "tasks", "render"},
     "controllers": {"plant", "effects", "sensors", "recordings", "experiments", "identify", "tasks", "render", "env"},

@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import ClassVar
 
-from flexarm_env.parameters import SENSOR, Parameter
+from flexarm_env.arm_sections import SENSOR
+from flexarm_env.parameters import Parameter
 from flexarm_env.plant.reading import Channel, Coordinates, Reading
 
 #: Defaults over the typical reading: end of the range, typical offset, largest offset.

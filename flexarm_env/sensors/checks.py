@@ -5,8 +5,9 @@ from __future__ import annotations
 import inspect
 import math
 
+from flexarm_env.arm_sections import SENSOR
 from flexarm_env.errors import InputError, did_you_mean
-from flexarm_env.parameters import INPUTS, NEEDS, SENSOR
+from flexarm_env.parameters import INPUTS, NEEDS
 from flexarm_env.sensors.base import Sensor
 
 #: Names that a signal cannot have: other columns of recordings, and names in the needs of effects.

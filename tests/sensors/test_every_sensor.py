@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from flexarm_env.arm import Arm
+from flexarm_env.arm_sections import SENSOR
 from flexarm_env.errors import InputError
 from flexarm_env.experiments.simulate import simulate
-from flexarm_env.parameters import SENSOR
 from flexarm_env.recordings.recording import Recording
 from flexarm_env.sensors import Sensor, known_sensors
 from flexarm_env.sensors.checks import checked

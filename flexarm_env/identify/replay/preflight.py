@@ -8,11 +8,11 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
+from flexarm_env.arm_sections import SECTIONS
 from flexarm_env.experiments.stated import PAYLOAD
 from flexarm_env.identify.replay.dataset import Dataset
 from flexarm_env.identify.replay.run import Run
 from flexarm_env.identify.settings import Preparation
-from flexarm_env.parameters import SECTIONS
 from flexarm_env.recordings.noise import Readings, estimate_noise
 
 Floats = NDArray[np.float64]
