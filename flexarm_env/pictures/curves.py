@@ -115,7 +115,7 @@ def loop(before: Comparison, after: Comparison, diagnosis: Diagnosis) -> Figure:
     bottom.set_xlabel("time [s]")
     _ranking(figure.add_subplot(grid[:, 1]), diagnosis.ranking[:BARS])
     steps = words.steps_of(diagnosis.error, diagnosis.effects)
-    _falling(figure.add_subplot(grid[:, 2]), steps, "3  The held-out error after each step")
+    _falling(figure.add_subplot(grid[:, 2]), steps, "3  Held-out error by step")
     figure.align_ylabels([top, bottom])
     return figure
 
