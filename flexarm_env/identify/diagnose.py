@@ -99,7 +99,7 @@ def diagnose(
         outlook.at(0.5, "estimating detection limits")
         found = with_outlook(found, trace, calibrator)
     found = replace(found, stopped=None if time_limit is None else trace.stop is not None)
-    notes = notes + hold_out_notes(calibrator.dataset) + ([trace.stop.note] if trace.stop else [])
+    notes = notes + hold_out_notes(calibrator.dataset) + trace.notes
     return _with_run_facts(found, notes, deadline, seed)
 
 
@@ -109,7 +109,7 @@ def _search(
     base, nominal = judge((), constants, calibrator.dataset), calibrator.nominal
     rules = criteria(calibrator.score(nominal), base.score, error_measure(nominal).judges_free_run, calibrator.settings)
     search = Search(calibrator, rules)
-    return search, search.run(base, progress)
+    return search, search.settle(search.run(base, progress))
 
 
 def _with_run_facts(found: Diagnosis, notes: list[str], deadline: Deadline, seed: int) -> Diagnosis:

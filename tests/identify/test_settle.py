@@ -1,16 +1,23 @@
-"""Constants that the fitted part of recordings leaves undetermined are settled by the rest."""
+"""Values that the fitted part of recordings leaves undetermined are settled by the rest: constants, and those of effects."""
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from searches import accept, far_off, model, scored
 
 from flexarm_env import Arm, Recording, diagnose, fit, simulate
 from flexarm_env.identify.calibrate import calibrator as module
 from flexarm_env.identify.calibrate.calibrator import Calibrator
 from flexarm_env.identify.replay.dataset import prepare
+from flexarm_env.identify.replay.error_measure import Score
+from flexarm_env.identify.select import search as search_module
+from flexarm_env.identify.select.criteria import ThresholdCriteria
+from flexarm_env.identify.select.trace import Trace
+from flexarm_env.identify.settings import SETTINGS
 
 COULOMB, STICTION = 0.2, 0.08  # [Nm]
 HELD = 0.26  # [Nm], between both models' static friction
@@ -98,3 +105,46 @@ def test_a_slow_axis_is_explained_though_its_error_is_a_step_in_static_friction(
     errors = [calibrator.score(found.arm, held_out).windows for held_out in (False, True)]
     assert max(errors) < 1.05
     assert found.arm.value("effects.stiction.extra") == pytest.approx(0.001134, rel=0.05)
+
+
+LATE = Score(1.02, 1.6)  # windows at the noise, one free run beyond it
+RIGHT = Score(1.01, 1.01)
+
+
+def settled(monkeypatch, held: Score, fitted: Score, then: Score) -> Trace:
+    """Settle a model with a limit of the command, of which a fit to all of the data leaves these errors."""
+    search = far_off()
+    search.calibrator.workers.threads = contextlib.nullcontext
+    search.calibrator.calibrate_on_all_data = lambda calibration: calibration
+    monkeypatch.setattr(search_module, "judge", lambda effects, *_: scored(then, *effects))
+    rules = ThresholdCriteria(Score(2.1, 1.8), Score(2.0, 1.8), True, SETTINGS)
+    found = replace(scored(held, "saturation"), fitted_score=fitted)
+    return replace(search, criteria=rules).settle(accept(Trace.begin(model(error=2.0)), found, "saturation"))
+
+
+def test_a_limit_that_is_reached_once_is_settled_by_the_held_out_part(monkeypatch):
+    trace = settled(monkeypatch, LATE, RIGHT, RIGHT)
+    assert [step.action for step in trace.steps] == ["calibrate", "accept", "settle"]
+    assert trace.effects == ["saturation"]
+    assert trace.model.score == trace.accepted[0].score == RIGHT
+    assert trace.notes == [
+        "nothing was held out of the last fit and its error: the held-out part alone determines a value of the model"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("held", "fitted", "then"),
+    [
+        (RIGHT, RIGHT, RIGHT),  # nothing is left to settle
+        (Score(1.3, 1.6), RIGHT, RIGHT),  # windows of the held-out part show that something else is missing
+        (LATE, Score(1.3, 1.05), RIGHT),  # and so do those of the fitted part,
+        (LATE, Score(1.05, 1.3), RIGHT),  # or whole runs of it
+        (LATE, RIGHT, LATE),  # no value explains everything
+        (LATE, RIGHT, Score(1.3, 1.3)),
+    ],
+)
+def test_a_model_that_fails_elsewhere_is_not_settled(monkeypatch, held, fitted, then):
+    trace = settled(monkeypatch, held, fitted, then)
+    assert [step.action for step in trace.steps] == ["calibrate", "accept"]
+    assert trace.model.score == held
+    assert trace.notes == []

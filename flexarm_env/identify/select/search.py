@@ -21,7 +21,18 @@ from flexarm_env.identify.select.screen import Trial, control_of, screen
 from flexarm_env.identify.select.starts import candidates, shows_part_of_period
 from flexarm_env.identify.select.stepwise import extend_chain
 from flexarm_env.identify.select.swap import compare_rivals, exchange
-from flexarm_env.identify.select.trace import Accepted, Trace, Tried, beside, gains, others_of, placed, share, with_last_score
+from flexarm_env.identify.select.trace import (
+    SETTLE,
+    Accepted,
+    Trace,
+    Tried,
+    beside,
+    gains,
+    others_of,
+    placed,
+    share,
+    with_last_score,
+)
 
 
 @dataclass(frozen=True)
@@ -71,6 +82,23 @@ class Search:
         tried = (trace.model.calibration, *(t.calibration for t in trace.ranking.values() if t.calibration))
         best = min(tried, key=lambda c: self.calibrator.score(c.arm, held_out=False).windows)
         return self.calibrator.hold_out_late(best.arm)
+
+    def settle(self, trace: Trace) -> Trace:
+        """Calibrate the final model on all of the data where it fails in whole runs of the held-out part alone.
+
+        The fitted part may leave a value uncertain, such as a limit that is reached once. It is kept if it explains everything
+        then.
+        """
+        model, most = trace.model, self.calibrator.settings.errors.nothing_left
+        right = max(model.score.windows, model.fitted_score.windows, model.fitted_score.free_run) <= most
+        if self.is_late or not trace.accepted or not right or self.criteria.explains(model):
+            return trace
+        with self.calibrator.workers.threads():
+            calibration = self.calibrator.calibrate_on_all_data(model.calibration)
+        settled = judge(model.effects, calibration, self.calibrator.dataset)
+        if not self.criteria.is_fully_explained(settled):
+            return trace
+        return trace.then(SETTLE, settled, with_last_score(trace.accepted, settled))
 
     def _forward(self, trace: Trace, progress: Progress) -> Trace:
         """Add the best effect, exchange those that another fits better, again, and drop what later ones made useless."""

@@ -15,6 +15,9 @@ from flexarm_env.identify.replay.error_measure import Score
 from flexarm_env.identify.select.criteria import Measure
 from flexarm_env.identify.select.model import Model
 
+#: Action of a calibration on all of the data.
+SETTLE = "settle"
+
 
 @dataclass(frozen=True)
 class Tried:
@@ -55,7 +58,7 @@ class Step:
     """One step of a search.
 
     Attributes:
-        action: "calibrate", "screen", "fit", "recalibrate", "accept", "combine", "forecast", "swap" or "drop".
+        action: "calibrate", "screen", "fit", "recalibrate", "accept", "combine", "forecast", "swap", "drop" or "settle".
         model: the best one after the step.
         accepted: effects after the step.
         tried: effects that the step compared.
@@ -118,6 +121,12 @@ class Trace:
     def stopped_before(self, left_out: str, deadline: Deadline) -> Trace:
         """Record what is left out as the time is over; only the first counts."""
         return replace(self, stop=self.stop or Stop(deadline.elapsed, left_out))
+
+    @property
+    def notes(self) -> list[str]:
+        """Lines for a person: what was left out for lack of time, and whether the last errors are of data that a fit saw."""
+        settled = ["nothing was held out of the last fit and its error: the held-out part alone determines a value of the model"]
+        return [*([self.stop.note] if self.stop else []), *(settled if self.steps[-1].action == SETTLE else [])]
 
     @property
     def model(self) -> Model:
