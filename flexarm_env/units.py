@@ -23,6 +23,8 @@ _UNIT = re.compile(rf"(?:1 */ *)?{_FACTOR}(?: *[*/·] *{_FACTOR}| +{_FACTOR})*")
 _NUMBER = r"[+-]?(?:\d++(?>(?:\.\d*+)?)|\.\d++)(?:[eE][+-]?\d++|(?![eE](?![A-Za-z])))"
 _QUANTITY = re.compile(rf"({_NUMBER})(?>(?:(?:\s++(?=1 */)|\s*+(?=[^\d\s.,:;-]))(.*+))?)")
 _LONGEST = 60
+#: Power of a length in a torque, and in a voltage.
+_LENGTHS_OF_TORQUE = 2
 _PERCENT = ("%", "percent")
 # Without these pint reads Nm as "number metre", a count of yarn, and the others not at all.
 _COMPOUNDS = (
@@ -82,12 +84,20 @@ def _same_kind(unit: pint.Unit, target: pint.Unit) -> bool:
     """Compare the quantities that two units measure.
 
     Pint treats an angle as a bare number, and would take Hz for rad/s without the factor 2π. Powers of the radian must
-    therefore agree, except in forces and voltages "per radian": Nm for Nm/rad is customary.
+    therefore agree, except where a torque or a voltage is related to motion: Nm for Nm/rad is customary, V·s/rad for Nm/A.
     """
     if unit.dimensionality != target.dimensionality:
         return False
-    customary = "[mass]" in target.dimensionality and "hertz" not in str(unit)
+    lengths = next((abs(float(power.real)) for name, power in target.dimensionality.items() if name == "[length]"), 0.0)
+    has_torque = "[mass]" in target.dimensionality and lengths >= _LENGTHS_OF_TORQUE
+    is_related = _angle_power(target) != 0.0 or target.dimensionality not in _torque_and_voltage()
+    customary = has_torque and is_related and "hertz" not in str(unit)
     return customary or _angle_power(unit) == _angle_power(target)
+
+
+@functools.cache
+def _torque_and_voltage() -> tuple[object, ...]:
+    return tuple(_registry().Unit(name).dimensionality for name in ("Nm", "V"))
 
 
 def converts(unit: str, target: str) -> bool:

@@ -28,6 +28,9 @@ from flexarm_env.errors import InputError
         ("3 1/ms", "1/s", 3000.0),
         ("0.02 rad/(N m)", "rad/N/m", 0.02),
         ("2 N*m/(rad/s)^2", "N*m*s**2/rad**2", 2.0),
+        ("0.5 V*s/rad", "Nm/A", 0.5),
+        ("0.02 N*m*s**2/rad", "kg*m**2", 0.02),
+        ("2 V", "V/rad", 2.0),
     ],
 )
 def test_quantities(value: str | float, target: str, expected: float) -> None:
@@ -73,6 +76,10 @@ def test_making_the_registry_warns_of_nothing(caplog):
         ("4e", "C"),
         ("4e-", "C"),
         ("5 V/Hz", "V*s/rad"),
+        ("5 V/deg", "V"),
+        ("5 V/rad", "V"),
+        ("5 N*m/deg", "N*m"),
+        ("5 N*m*deg", "N*m"),
         ("20 degC", "K"),
         ("3 kg kg", "kg"),
         ("2 000", "kg"),

@@ -12,10 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.errors import InputError
-from flexarm_env.parameters import INPUTS
-from flexarm_env.recordings.columns import ColumnMap
+from flexarm_env.recordings.columns import ColumnMap, may_be_absent
 from flexarm_env.recordings.messages import quoted
-from flexarm_env.sensors import known_sensors
 
 #: Cells of a line: no logger has as many columns.
 MOST_CELLS = 100_000
@@ -112,7 +110,7 @@ def read_numbers(
         read = _quickly(texts, delimiter, list(labels))
         if read is None:
             read = _quickly(_filled(texts, delimiter), delimiter, list(labels))
-        needed = [i for i, name in enumerate(labels.values()) if not _may_be_absent(name)]
+        needed = [i for i, name in enumerate(labels.values()) if not may_be_absent(name)]
         if read is not None and not np.isnan(read[:, needed]).any():
             return read
     return np.array(list(_row_by_row(rows, lines, labels, width, layout)), dtype=np.float64)
@@ -144,11 +142,6 @@ def _filled(rows: list[str], delimiter: str) -> list[str]:
     return [empty.sub("nan", row) for row in rows]
 
 
-def _may_be_absent(name: str) -> bool:
-    """Whether a column may have empty cells: a signal is not measured there, and a command goes on."""
-    return name in known_sensors() or name in INPUTS
-
-
 def _is_absent(cell: str) -> bool:
     """Whether a cell holds nothing; "NaN" is a number."""
     return cell.strip(" \t") in ("", "NA")
@@ -176,9 +169,9 @@ def _row_by_row(
         for index, name in labels.items():
             if name in layout.conditions:
                 cells[index] = _TRUTH.get(cells[index].strip().lower(), cells[index])
-            absent = _may_be_absent(name) and _is_absent(cells[index])
+            absent = may_be_absent(name) and _is_absent(cells[index])
             if not absent and not is_number(cells[index], layout.decimal):
-                raise InputError(f"{where}, column '{name}': {_not_a_number(cells[index], _may_be_absent(name))}")
+                raise InputError(f"{where}, column '{name}': {_not_a_number(cells[index], may_be_absent(name))}")
         yield [math.nan if _is_absent(cell) else float(_point(cell, layout.decimal)) for cell in map(cells.__getitem__, labels)]
 
 

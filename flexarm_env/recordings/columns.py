@@ -11,6 +11,7 @@ from flexarm_env import units
 from flexarm_env.control.law import ControlLaw
 from flexarm_env.errors import InputError, did_you_mean
 from flexarm_env.parameters import INPUTS
+from flexarm_env.recordings.conditions import CONDITIONS
 from flexarm_env.recordings.corrections import Corrections
 from flexarm_env.sensors import known_sensors
 
@@ -195,6 +196,27 @@ def base_value(number: float, source: Source) -> units.BaseValue:
     scale, scale_unit = (float(source.scale), "") if isinstance(source.scale, int | float) else units.split(source.scale)
     unit = "" if source.unit == "1" else source.unit
     return units.in_base(source.sign * scale * number, scale_unit, unit)
+
+
+def condition_value(name: str, number: float, source: Source) -> units.BaseValue:
+    """Convert a number of a condition to SI: a payload to kg, a start to s, others to base units.
+
+    Raises:
+        InputError: for a unit of another quantity.
+    """
+    if name not in CONDITIONS:
+        return base_value(number, source)
+    target = CONDITIONS[name]
+    if source.unit == "1":
+        per_number = units.quantity(source.scale, target)
+    else:
+        per_number = units.factor(source.unit, target, source.scale)
+    return units.BaseValue(source.sign * per_number * number, target)
+
+
+def may_be_absent(name: str) -> bool:
+    """Whether a column may have empty rows: a signal is not measured there, and a command goes on."""
+    return name in known_sensors() or name in INPUTS
 
 
 def _in_volts(source: Source) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from flexarm_env import units
-from flexarm_env.errors import InputError, did_you_mean, nearest
+from flexarm_env.errors import InputError, nearest
 from flexarm_env.recordings.messages import quoted
 
 CONDITIONS = {"payload": "kg", "start": "s"}
@@ -17,6 +17,8 @@ _STATEMENT = re.compile(
     r"(?>(?:(?:is|was|of|->)(?!\w)|[=:,;]++)?)\s*+(.*+)"
 )
 _VALUE = re.compile(r"([+-]?+(?:\d++(?>(?:\.\d*+|,\d++)?)|\.\d++)(?>(?:[eE][+-]?+\d++)?))[\s,;]*+([A-Za-zµμ]*+)(.*+)")
+#: What may follow a condition's name: "payload mass".
+_ADDITION = re.compile(r"\A([A-Za-z]++)[\s_-]++(?:mass|weight)(?![A-Za-z])", re.IGNORECASE)
 #: What follows the number of a date, a time, a version or a share.
 _OF_A_DATE = re.compile(r"[-:./]\d")
 _LONGEST_UNIT = 10
@@ -47,6 +49,8 @@ def add_condition(line: str, conditions: dict[str, float]) -> dict[str, str]:
     if name in conditions:
         raise InputError(f"condition {quoted(name)} comes twice; keep one of the two")
     check_spelling(name)
+    if name in CONDITIONS and unit and not units.is_unit(unit) and units.is_quantity(match[5]) and units.split(match[5])[1]:
+        raise InputError(f"{quoted(text)}: {quoted(unit)} is no unit; write '# {name} = {match[5]}'")
     if name in CONDITIONS:
         conditions[name] = units.quantity(value, CONDITIONS[name])
     elif units.is_quantity(value):
@@ -85,15 +89,16 @@ def check_spelling(name: str) -> None:
     Raises:
         InputError: for such a name.
     """
-    if name not in CONDITIONS and _near(name):
-        raise InputError(f"unknown condition {quoted(name)}{did_you_mean(name.lower(), CONDITIONS)}")
+    meant = None if name in CONDITIONS else _near(_ADDITION.sub(r"\1", name))
+    if meant is not None:
+        raise InputError(f"unknown condition {quoted(name)}; did you mean {quoted(meant)}?")
 
 
 def _check_remark(text: str) -> None:
     """Refuse a remark such as "payload 0.3 kg" or "tip payload: 0.3 kg", which would be lost as a condition."""
     _, _, later = text.partition(" ")
     for part in (text, later.lstrip()):
-        match = _STATEMENT.fullmatch(part)
+        match = _STATEMENT.fullmatch(_ADDITION.sub(r"\1", part))
         name = _near(match[1]) if match else None
         value = _VALUE.fullmatch(f"{match[3]} {match[2] or ''}".strip()) if match and name else None
         if match is None or name is None or value is None:

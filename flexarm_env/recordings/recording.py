@@ -399,12 +399,13 @@ def _check_signal(recording: Recording, required: bool, place: str = "") -> None
 
 
 def with_distinct_names(recordings: Sequence[Recording]) -> list[Recording]:
-    """Rename recordings so that their names differ: by their folder, else by their path."""
+    """Rename recordings so that they differ: by their folder, else by their path, else by path and name."""
     sources = [Path(recording.source) for recording in recordings]
     for names in (
         [recording.name for recording in recordings],
         [f"{source.parent.name}/{recording.name}" for source, recording in zip(sources, recordings, strict=True)],
         [str(source) for source in sources],
+        [f"{source}: {recording.name}" for source, recording in zip(sources, recordings, strict=True)],
     ):
         if len(set(names)) == len(names):
             break

@@ -87,14 +87,26 @@ def test_an_element_is_named_in_the_path_alone(tmp_path, key):
     assert "entries.q[0]" in message
 
 
-def test_a_command_is_needed_in_every_entry(tmp_path):
+def test_a_command_goes_on_where_an_entry_has_none(tmp_path):
     content = log()
     content["entries"][3]["u"] = None
-    assert "column 'voltage': 'entries.u' leads to 'null', not to a number" in refusal(written(tmp_path, content), columns=MAP)
-    del content["entries"][3]["u"]
-    assert "column 'voltage': 'entries.u' finds no 'u' in an object with 't', 'q', 'on'" in refusal(
-        written(tmp_path, content), columns=MAP
-    )
+    del content["entries"][4]["u"]
+    run = Recording.read(written(tmp_path, content), MAP)
+    assert run.command.tolist() == [0.0, 1.0, 2.0, 2.0, 2.0, 5.0]
+    assert "'voltage' stands in 4 of 6 rows; in the others the last command holds" in run.notes
+    content["entries"][0]["u"] = None
+    assert "the first command stands in sample 2" in refusal(written(tmp_path, content), columns=MAP)
+
+
+@pytest.mark.parametrize("absent", [True, False])
+def test_time_is_needed_in_every_entry(tmp_path, absent):
+    content = log()
+    content["entries"][3]["t"] = None
+    words = "leads to 'null', not to a number"
+    if absent:
+        del content["entries"][3]["t"]
+        words = "finds no 't' in an object with 'u', 'q', 'on'"
+    assert f"column 'time': 'entries.t' {words}" in refusal(written(tmp_path, content), columns=MAP)
 
 
 @pytest.mark.parametrize(("name", "key"), [("time", "t"), ("voltage", "u"), ("arm_angle", "q")])

@@ -243,6 +243,25 @@ def test_a_condition_as_headers_and_spreadsheets_write_it(tmp_path: Path, remark
     assert run.notes == ()
 
 
+@pytest.mark.parametrize(
+    ("remark", "meant"),
+    [
+        ("Payload mass: 0.3 kg", "'# payload = 0.3 kg'"),
+        ("payload weight = 0.3 kg", "'# payload = 0.3 kg'"),
+        ("payload mass [kg]: 0.3", "'# payload = 0.3 kg'"),
+        ("payload_mass = 0.3 kg", "'payload'"),
+        ("payload (at tip): 0.3 kg", "'# payload = 0.3 kg'"),
+    ],
+)
+def test_a_payload_in_more_words_is_not_lost(tmp_path: Path, remark: str, meant: str) -> None:
+    assert meant in refusal(save(tmp_path, f"# {remark}\n{GOOD}"))
+
+
+@pytest.mark.parametrize("remark", ["payload mass: see log", "payload massive: 3 kg", "payload weight: heavy"])
+def test_prose_about_a_payload_is_a_remark(tmp_path: Path, remark: str) -> None:
+    assert Recording.read(save(tmp_path, f"# {remark}\n{GOOD}")).conditions == {}
+
+
 def test_a_name_that_is_no_word_costs_no_comparison(tmp_path: Path) -> None:
     with ends():
         assert Recording.read(save(tmp_path, f"# {'payload' * 3_000_000} = 3\n{GOOD}")).conditions

@@ -49,6 +49,42 @@ def test_a_condition_without_a_unit_is_a_bare_number(tmp_path):
     assert read(tmp_path, TEXT.format(6, 6, 6), columns).conditions == {"trial": 6.0}
 
 
+def stated(tmp_path: Path, name: str, entry: dict) -> float:
+    columns = COLUMNS | {"conditions": {name: {"column": "m"} | entry}}
+    return read(tmp_path, TEXT.format(6, 6, 6), columns).conditions[name]
+
+
+@pytest.mark.parametrize(
+    ("name", "entry", "found"),
+    [
+        ("payload", {"unit": "g"}, 0.25),
+        ("payload", {"unit": "g", "scale": 2.0}, 0.5),
+        ("payload", {"unit": "N", "scale": "0.1 kg/N"}, 25.0),
+        ("payload", {"unit": "1", "scale": 1e-3}, 0.25),
+        ("payload", {"unit": "1", "scale": "1 g"}, 0.25),
+        ("start", {"unit": "ms"}, 0.25),
+    ],
+)
+def test_a_payload_and_a_start_are_in_kg_and_s(tmp_path, name, entry, found):
+    assert stated(tmp_path, name, entry) == pytest.approx(found)
+
+
+@pytest.mark.parametrize(
+    ("name", "entry", "words"),
+    [
+        ("payload", {"unit": "N"}, "unit 'N' does not convert to kg; write one of kg, g"),
+        ("payload", {"unit": "mm"}, "unit 'mm' does not convert to kg"),
+        ("payload", {"unit": "degC"}, "unit 'degC' does not convert to kg"),
+        ("payload", {"unit": "1", "scale": "2 rad"}, "unit 'rad' does not convert to kg"),
+        ("payload", {"unit": "kg", "scale": "2 rad"}, "unit 'kg × rad' does not convert to kg"),
+        ("start", {"unit": "kg"}, "unit 'kg' does not convert to s"),
+    ],
+)
+def test_a_payload_and_a_start_of_another_quantity_are_refused(tmp_path, name, entry, words):
+    with pytest.raises(InputError, match=f"condition '{name}': {words}"):
+        stated(tmp_path, name, entry)
+
+
 def test_the_mean_of_numbers_that_differ_is_a_condition_where_it_is_wanted(tmp_path):
     conditions = {"supply": {"column": "P", "unit": "mV", "mean": True}}
     found = read(tmp_path, TEXT.format(7200, 7100, 7600), COLUMNS | {"conditions": conditions})

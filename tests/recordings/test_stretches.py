@@ -178,3 +178,13 @@ def test_a_servo_whose_torque_is_switched_off_falls_as_a_free_pendulum(tmp_path)
     assert np.ptp(parts[1].signals["arm_angle"]) > 1.0
     assert compare(arm, parts).error < 1.5
     assert compare(arm, [replace(parts[1], conditions=LOAD)]).error > 20.0
+
+
+def test_parts_of_files_of_one_name_in_folders_of_one_name_have_names_of_their_own(tmp_path):
+    for folder in ("x/a", "y/a"):
+        (tmp_path / folder).mkdir(parents=True)
+        (tmp_path / folder / "run.csv").write_text(text_of([250, 250, 0, 0]))
+    found = Recording.read_all([tmp_path / "x/a", tmp_path / "y/a"], COLUMNS)
+    names = [one.name for one in found]
+    assert len(set(names)) == len(names) == 4
+    assert names[1] == f"{tmp_path / 'x/a/run.csv'}: run part 2"

@@ -9,10 +9,11 @@ import numpy as np
 
 from flexarm_env.errors import InputError
 from flexarm_env.recordings.checks import as_vector
-from flexarm_env.recordings.columns import MADE, ColumnMap, Source, base_value
+from flexarm_env.recordings.columns import MADE, ColumnMap, Source, condition_value
 from flexarm_env.recordings.messages import quoted
 from flexarm_env.recordings.stretches import held
 from flexarm_env.recordings.table import Table
+from flexarm_env.units import BaseValue
 
 
 @dataclass(frozen=True)
@@ -104,16 +105,23 @@ class Format:
                     raise InputError(
                         f"condition '{name}': {place} has {len(numbers)} numbers for {samples} samples; write mean = true"
                     )
-                changing[name] = [base_value(number, source) for number in held(numbers).tolist()]
+                changing[name] = [_condition_of(name, number, source) for number in held(numbers).tolist()]
                 continue
             with np.errstate(over="ignore"):  # an overflow is reported as a condition that is not finite
                 number = float(np.mean(known)) if differ else float(known[0])
             if differ:
                 spread = f"{known.min():.4g} to {known.max():.4g}"
                 notes.append(f"condition '{name}' is the mean of {place}, {number:.4g} {source.unit} of {spread}")
-            conditions[name] = base_value(number, source)
+            conditions[name] = _condition_of(name, number, source)
         values = {name: numbers for name, numbers in table.values.items() if name not in columns.conditions}
         return replace(table, values=values, conditions=conditions, changing=changing, notes=tuple(notes))
+
+
+def _condition_of(name: str, number: float, source: Source) -> BaseValue:
+    try:
+        return condition_value(name, number, source)
+    except InputError as error:
+        raise InputError(f"condition '{name}': {error}") from None
 
 
 def _refuse_twins(columns: ColumnMap) -> None:

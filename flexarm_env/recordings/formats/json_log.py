@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 
 from flexarm_env import units
 from flexarm_env.errors import InputError
-from flexarm_env.recordings.columns import ColumnMap
+from flexarm_env.recordings.columns import ColumnMap, may_be_absent
 from flexarm_env.recordings.formats.base import Format
 from flexarm_env.recordings.formats.json_text import load_json
 from flexarm_env.recordings.messages import quoted
 from flexarm_env.recordings.table import MOST_LINES, Table
-from flexarm_env.sensors import known_sensors
 
 Floats = NDArray[np.float64]
 
@@ -59,7 +58,7 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
 
 
 def _column(log: Any, name: str, path: str, truth: bool) -> Floats:
-    """Read the numbers of one quantity; NaN where an entry has none of a signal, 1 and 0 for true and false where they may be."""
+    """Read the numbers of one quantity: NaN where it may be absent and is, 1 and 0 for true and false where they may be."""
     if _PATH.fullmatch(path) is None:
         raise InputError(f"column '{name}': {quoted(path)} is no path; write one such as 'entries.position' or 'entries.q[0]'")
     found = _follow(log, _STEP.findall(path), name, path)
@@ -72,7 +71,7 @@ def _column(log: Any, name: str, path: str, truth: bool) -> Floats:
 
 
 def _follow(value: Any, steps: Sequence[tuple[str, str]], name: str, path: str, in_entry: bool = False) -> Any:
-    """Follow a path: a name behind a list in each of its elements. None where an entry lacks a signal."""
+    """Follow a path: a name behind a list in each of its elements. None where an entry lacks what may be absent."""
     for done, (field, index) in enumerate(steps):
         if field and isinstance(value, list):
             return [_follow(element, steps[done:], name, path, in_entry=True) for element in value]
@@ -80,7 +79,7 @@ def _follow(value: Any, steps: Sequence[tuple[str, str]], name: str, path: str, 
             value = value[field]
         elif index and isinstance(value, list) and int(index) < len(value):
             value = value[int(index)]
-        elif in_entry and name in known_sensors() and (value is None or (field and isinstance(value, dict))):
+        elif in_entry and may_be_absent(name) and (value is None or (field and isinstance(value, dict))):
             return None
         else:
             raise InputError(f"column '{name}': {quoted(path)} finds no {quoted(field or f'[{index}]')} in {_holds(value)}")
@@ -96,8 +95,8 @@ def _holds(value: Any) -> str:
 
 
 def _number(value: Any, name: str, path: str, truth: bool) -> float:
-    """Convert an entry to a number: a signal that is absent to NaN, and true and false of a condition to 1 and 0."""
-    if value is None and name in known_sensors():
+    """Convert an entry to a number: what is absent and may be to NaN, and true and false of a condition to 1 and 0."""
+    if value is None and may_be_absent(name):
         return math.nan
     if not isinstance(value, int | float) or (isinstance(value, bool) and not truth):
         raise InputError(f"column '{name}': {quoted(path)} leads to {_holds(value)}, not to a number")
