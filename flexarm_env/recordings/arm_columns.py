@@ -9,11 +9,8 @@ from pathlib import Path
 from flexarm_env.errors import InputError
 from flexarm_env.parameters import INPUTS
 from flexarm_env.recordings.columns import ColumnMap, Source, check_names, native_sources
-from flexarm_env.recordings.formats.text import read_header
+from flexarm_env.recordings.formats.catalogue import format_of
 from flexarm_env.sensors import known_sensors
-
-#: Bytes of a file in which its header must lie.
-_HEAD = 1 << 16
 
 
 def layout_of(path: Path, columns: ColumnMap, require_signal: bool = True) -> tuple[ColumnMap | None, str]:
@@ -46,7 +43,10 @@ def layout_of(path: Path, columns: ColumnMap, require_signal: bool = True) -> tu
         if not by_number or all(_agree(own.get(name), source) for name, source in found.items()):
             return columns, _note("the arm's [columns]", "its own header differs", differing)
         return None, _note("its own header", "the arm's [columns] differ", differing)
-    if by_number or not differing:
+    if by_number:
+        differing = [name for name in columns.sources if name not in found or own.get(name) != found[name]]
+        return None, _note("its own header", "the arm's [columns] differ", differing)
+    if not differing:
         return None, ""
     return (columns, "") if require_signal else (None, _note("its own header", "the arm's [columns] differ", differing))
 
@@ -77,9 +77,12 @@ def _own_header(path: Path) -> tuple[dict[str, Source], list[str]]:
     """Read the sources that a header of FlexArm's own states, and its cells; nothing where there is none."""
     if not path.is_file():  # a pipe would wait for ever
         return {}, []
+    read_header = format_of(path).header
+    if read_header is None:
+        return {}, []
     try:
         with path.open("rb") as file:
-            texts = read_header(file.read(_HEAD))
+            texts = read_header(file)
         return native_sources(texts), texts
     except (OSError, InputError):
         return {}, []

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from cli_stand_ins import GOOD_ARM
 from hypothesis import HealthCheck, given, settings
@@ -16,6 +17,7 @@ from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 from flexarm_env.lab.session import Session
 from flexarm_env.lab.uploads import read_upload
+from flexarm_env.recordings.column_maps import load_columns
 from flexarm_env.recordings.recording import Recording
 from flexarm_env.terminal.inputs import read_recordings
 
@@ -142,3 +144,44 @@ def test_a_file_that_no_rule_reads_is_refused_by_the_map(tmp_path):
     arm = Arm.load(arm_file(tmp_path, time=TIME, current=CURRENT, arm_angle=TURNED))
     with pytest.raises(InputError, match="no 'current \\[A\\]' in the header"):
         read_recordings(arm, [recording(tmp_path, "time [s],u,arm_angle [rad]")], None)
+
+
+NUMBERS = {
+    "time": {"index": 0, "unit": "s"},
+    "current": {"index": 1, "unit": "A"},
+    "arm_angle": {"index": 2, "unit": "rad"},
+    "motor_speed": {"index": 3, "unit": "rad/s"},
+}
+DEGREES = "time [s],current [A],arm_angle [deg],motor_speed [rad/s]"
+
+
+def read_by_numbers(file: Path) -> Recording:
+    arm = replace(Arm.load("thesis"), columns=load_columns(NUMBERS))
+    (found,) = read_recordings(arm, [file], None)
+    return found
+
+
+def same_table(folder: Path, header: str, kind: str) -> Path:
+    """Write a table whose angle is in degrees as CSV, behind many remarks or not, or as Parquet."""
+    names = header.split(",")
+    columns = [[k / 10 for k in range(12)], [float(k % 3) for k in range(12)], [float(k) for k in range(12)], [2.0] * 12]
+    if kind == "parquet":
+        arrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+        parquet.write_table(arrow.table(dict(zip(names, columns, strict=False))), folder / "run.parquet")
+        return folder / "run.parquet"
+    rows = "".join(",".join(map(str, row)) + "\n" for row in zip(*columns[: len(names)], strict=True))
+    return recording(folder, "# a remark of the logger\n" * (5000 if kind == "remarks" else 0) + header, rows)
+
+
+@pytest.mark.parametrize("kind", ["csv", "remarks", "parquet"])
+def test_a_header_with_other_units_is_followed_in_every_kind_of_file(tmp_path, kind):
+    found = read_by_numbers(same_table(tmp_path, DEGREES, kind))
+    assert found.signals["arm_angle"][11] == pytest.approx(11.0 * np.pi / 180.0)
+    assert any("read by its own header; the arm's [columns] differ in arm_angle" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("kind", ["csv", "parquet"])
+def test_a_map_of_more_numbers_than_the_file_has_columns_is_not_dropped_without_a_word(tmp_path, kind):
+    found = read_by_numbers(same_table(tmp_path, DEGREES.rpartition(",")[0].replace("deg", "rad"), kind))
+    assert list(found.signals) == ["arm_angle"]
+    assert any("read by its own header; the arm's [columns] differ in motor_speed" in note for note in found.notes)

@@ -90,6 +90,27 @@ def test_a_header_of_other_cells_than_the_rows_is_refused(tmp_path: Path) -> Non
         assert Recording.read(save(tmp_path, text), {**table, "delimiter": ","}).signals["arm_angle"].tolist() == [2, 2]
 
 
+@pytest.mark.parametrize("delimiter", [",", ";", "\t"])
+@pytest.mark.parametrize("mark", ['"', ""])
+def test_numbers_of_rows_without_a_name_shift_no_column(tmp_path: Path, delimiter: str, mark: str) -> None:
+    """R writes them before each row, and no name for them."""
+    names = {"time": {"column": "t", "unit": "ms"}, "current": {"column": "i", "unit": "A"}}
+    table = {"delimiter": delimiter, **names, "arm_angle": {"column": "phi", "unit": "rad"}}
+    rows = "".join(f"{mark}{k}{mark},{5 * (k - 1)},{1 + k / 10},{k / 10}\n" for k in range(1, 5))
+    message = refusal(save(tmp_path, f"t,i,phi\n{rows}".replace(",", delimiter)), columns=table)
+    assert "row 1: the header has 3 names, the rows have 4 cells; does the first column lack a name?" in message
+    by_number = table | {name: {"index": place, "unit": table[name]["unit"]} for place, name in enumerate(list(table)[1:], 1)}
+    run = Recording.read(save(tmp_path, f"t,i,phi\n{rows}".replace(",", delimiter)), by_number)
+    assert run.command.tolist() == [1.1, 1.2, 1.3, 1.4]
+
+
+@pytest.mark.parametrize("skip", [4, 5, 5000, 10**30])
+def test_more_rows_to_skip_than_a_file_has(tmp_path: Path, skip: int) -> None:
+    table = {**by_index(",", [0, 1, 2]), "skip_rows": skip}
+    message = refusal(save(tmp_path, "0,1,2\n1,1,2\n2,1,2\n3,1,2\n"), columns=table)
+    assert f"skip_rows is {skip}, but the file has 4 lines" in message
+
+
 @pytest.mark.parametrize("junk", ["\u00a0", "\x0b", "\x0c", "\x1c", "\x1d", "\x1e", "\x85", "\u2028", "\u3000", "\ufeff", "."])
 def test_a_row_of_one_odd_character_is_not_dropped(tmp_path: Path, junk: str) -> None:
     assert "row 3: has 1 cells where 3 are expected" in refusal(save(tmp_path, GOOD.replace("0.1,2", f"{junk}\n0.1,2")))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import BinaryIO
 
 import numpy as np
 
@@ -29,6 +30,7 @@ class Format:
         needs_map: whether only a column map says which column is which; otherwise a file may have FlexArm's own header.
         also: suffixes that such a file may have, too, but that files in a folder may have for other reasons.
         matrices: whether an entry may take a `row` or an `index` of a variable.
+        header: reads the names of the columns of an open file; None where columns have no names of FlexArm's own.
     """
 
     name: str
@@ -38,6 +40,7 @@ class Format:
     needs_map: bool = True
     also: tuple[str, ...] = ()
     matrices: bool = False
+    header: Callable[[BinaryIO], list[str]] | None = None
 
     def table(self, content: bytes, columns: ColumnMap | None) -> Table:
         """Read the content of a file.

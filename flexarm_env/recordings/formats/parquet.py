@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import re
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,15 +32,10 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
     Raises:
         InputError: for a file that pyarrow cannot read, and for a column that is absent or holds no numbers.
     """
-    parquet = library("pyarrow.parquet", "Parquet file")
     arrow = library("pyarrow", "Parquet file")
-    try:
-        file = parquet.ParquetFile(io.BytesIO(content))
-        rows, names = file.metadata.num_rows, list(file.schema_arrow.names)
-    except (arrow.ArrowException, OSError, ValueError) as error:
-        raise InputError(f"is damaged or no Parquet file: {quoted(str(error))}") from None
-    if rows > MOST_LINES:
-        raise InputError(f"has {rows} rows, the limit is {MOST_LINES}; cut it into shorter recordings")
+    file, names = _opened(io.BytesIO(content))
+    if file.metadata.num_rows > MOST_LINES:
+        raise InputError(f"has {file.metadata.num_rows} rows, the limit is {MOST_LINES}; cut it into shorter recordings")
     layout = columns or ColumnMap()
     found = _places(names, layout)
     try:
@@ -56,6 +51,26 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
         raise InputError(f"is damaged: {quoted(str(error))}") from None
     sources = {name: source for name, (source, _, _) in found.items()}
     return Table(values, sources, episodes=episodes.tolist())
+
+
+def read_header(file: BinaryIO) -> list[str]:
+    """Read the names of the columns of an open Parquet file.
+
+    Raises:
+        InputError: for a file that pyarrow cannot read.
+    """
+    return _opened(file)[1]
+
+
+def _opened(file: BinaryIO) -> tuple[Any, list[str]]:
+    """Open a Parquet file; also give the names of its columns."""
+    parquet = library("pyarrow.parquet", "Parquet file")
+    arrow = library("pyarrow", "Parquet file")
+    try:
+        opened = parquet.ParquetFile(file)
+        return opened, list(opened.schema_arrow.names)
+    except (arrow.ArrowException, OSError, ValueError) as error:
+        raise InputError(f"is damaged or no Parquet file: {quoted(str(error))}") from None
 
 
 def _places(names: list[str], layout: ColumnMap) -> dict[str, tuple[Source, str, int | None]]:
@@ -123,4 +138,4 @@ def _numbers(name: str, column: Any, element: int | None, unit: str, types: Any)
     return np.asarray(column.to_numpy(zero_copy_only=False), dtype=np.float64)
 
 
-FORMAT = Format("Parquet file", (".parquet",), ("column", "index"), read, needs_map=False)
+FORMAT = Format("Parquet file", (".parquet",), ("column", "index"), read, needs_map=False, header=read_header)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import BinaryIO
 
 import numpy as np
 
@@ -19,6 +20,8 @@ from flexarm_env.recordings.headers import header_sources, states_units
 from flexarm_env.recordings.messages import quoted
 from flexarm_env.recordings.table import MOST_LINES, Table
 
+#: Bytes that are read of a file for its header; as many again while they are remarks.
+_HEAD = 1 << 16
 #: The first line that tells Excel the delimiter.
 _EXCEL = re.compile(r"sep=(.)[;,\t]*+")
 
@@ -67,7 +70,7 @@ def read_rows(rows: list[str], places: Sequence[int], header: list[str], body: i
         raise InputError(f"has rows of {max(counts)} cells, the limit is {MOST_CELLS}; is the delimiter right?")
     width = len(header) if layout.refines else usual_width(counts)
     if any(source.key == "column" for source in layout.sources.values()):
-        _check_header(header, body, labels, width, layout.delimiter)
+        _check_header(header, body, labels, rows, width, layout.delimiter)
     even = counts.count(width) == len(rows)
     stamped = _column_of_stamps(rows[0], labels, layout)
     numbers = {place: name for place, name in labels.items() if place != stamped}
@@ -80,17 +83,26 @@ def read_rows(rows: list[str], places: Sequence[int], header: list[str], body: i
     return Table(values, sources, lines=[row + 1 for row in places])
 
 
-def read_header(head: bytes) -> list[str]:
-    """Read the cells of the header of a file that begins with these bytes and has no column map.
+def read_header(file: BinaryIO) -> list[str]:
+    """Read the cells of the header of an open file that has no column map.
 
     Raises:
         InputError: if there is no such header.
     """
+    head = file.read(_HEAD)
+    while _has_remarks_alone(head) and (more := file.read(len(head))):
+        head += more
     whole, _, _ = head.replace(b"\r", b"\n").rpartition(b"\n")  # the last line may be cut off, within a character, too
     lines = _decode(whole or head).split("\n")
     layout, skip = _excel(lines, ColumnMap())
     first, _, _ = _preamble(lines, skip, layout.header_prefix)
     return _header(lines, first, layout)[0]
+
+
+def _has_remarks_alone(head: bytes) -> bool:
+    """Whether the whole lines at the beginning of a file are blank or remarks."""
+    *lines, _ = head.removeprefix(b"\xef\xbb\xbf").replace(b"\r", b"\n").split(b"\n")
+    return all(not line.strip() or line.lstrip().startswith(b"#") for line in lines)
 
 
 def text_lines(content: bytes) -> list[str]:
@@ -140,6 +152,9 @@ def _preamble(lines: Sequence[str], skip: int, mark: str) -> tuple[int, dict[str
     """
     conditions: dict[str, float] = {}
     unread: dict[str, str] = {}
+    count = len(lines) - (not lines[-1])
+    if skip and skip >= count:
+        raise InputError(f"skip_rows is {skip}, but the file has {count} lines; write the number of lines before its header")
     first = skip
     while first < len(lines) and (is_blank(lines[first]) or lines[first].lstrip().startswith("#")):
         first += 1
@@ -210,15 +225,24 @@ def _column_of_stamps(row: str, labels: Mapping[int, str], layout: ColumnMap) ->
     return place if place is not None and place < len(cells) and is_stamp(cells[place]) else None
 
 
-def _check_header(header: Sequence[str], row: int, labels: dict[int, str], width: int, delimiter: str) -> None:
+def _check_header(
+    header: Sequence[str], row: int, labels: dict[int, str], rows: Sequence[str], width: int, delimiter: str
+) -> None:
     """Refuse a header with cells by which columns cannot be counted. Empty ones may end it, and nameless columns the rows."""
     named = len(header)
     while named and not header[named - 1].strip():
         named -= 1
-    if named > width or (named < width and delimiter == " "):
+    is_short = named < width and (delimiter == " " or (named == width - 1 and _begin_with_their_number(rows, delimiter)))
+    if named > width or is_short:
         beyond = next((f", none for '{name}'" for index, name in labels.items() if index >= width), "")
-        hint = "is there a blank in a name? give 'index' in place of 'column'" if delimiter == " " else "is the delimiter right?"
+        asked = "is there a blank in a name?" if delimiter == " " else "does the first column lack a name?"
+        hint = f"{asked} give 'index' in place of 'column'" if is_short or delimiter == " " else "is the delimiter right?"
         raise InputError(f"row {row}: the header has {named} names, the rows have {width} cells{beyond}; {hint}")
 
 
-FORMAT = Format("text table", (".csv",), ("column", "index"), read, needs_map=False, also=(".txt", ".dat"))
+def _begin_with_their_number(rows: Sequence[str], delimiter: str) -> bool:
+    """Whether the first cells are the numbers of the rows, as those for which R writes no name."""
+    return all(cut(text, delimiter)[0].strip() == str(number) for number, text in enumerate(rows, 1))
+
+
+FORMAT = Format("text table", (".csv",), ("column", "index"), read, needs_map=False, also=(".txt", ".dat"), header=read_header)
