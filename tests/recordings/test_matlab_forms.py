@@ -95,6 +95,10 @@ FORMS: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "three dimensions": ({"t": TIME, "u": VOLTS.reshape(1, 1, -1), "q": ANGLE}, entries("t", "u", "q")),
     "a sample time": ({"Ts": 0.002, "u": VOLTS, "q": ANGLE}, entries("Ts", "u", "q")),
     "a sample time in ms": ({"Ts": 2, "u": VOLTS, "q": ANGLE}, entries({"variable": "Ts", "unit": "ms"}, "u", "q")),
+    "a sample time and a longer condition": (
+        {"Ts": 0.002, "u": VOLTS, "q": ANGLE, "k": np.full(50, 7.0)},
+        entries("Ts", "u", "q") | {"conditions": {"kp": {"variable": "k", "unit": "1"}}},
+    ),
     "a rate": ({"fs": 500, "u": VOLTS, "q": ANGLE}, entries({"variable": "fs", "unit": "Hz"}, "u", "q")),
     "a rate in kHz": ({"fs": 0.5, "u": VOLTS, "q": ANGLE}, entries({"variable": "fs", "unit": "kHz"}, "u", "q")),
     "a rate in the map": ({"u": VOLTS, "q": ANGLE}, entries("t", "u", "q") | {"time": {"rate": 500}}),

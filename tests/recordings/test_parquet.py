@@ -78,3 +78,13 @@ def test_parquet_by_a_map_with_lists_and_timestamps(tmp_path: Path) -> None:
         ("acton[0]", "no 'acton' in the header; did you mean 'action'?"),
     ):
         assert words in refusal(path, columns={**table, "current": {"column": place, "unit": "A"}})
+
+
+def test_stamps_of_a_scale_are_refused_in_parquet(tmp_path: Path) -> None:
+    arrow = pytest.importorskip("pyarrow")
+    path = parquet(tmp_path / "run.parquet", t=arrow.array(np.array(STAMPS).astype("datetime64[ns]")), i=TIMES, q=TIMES)
+    table: dict[str, Any] = {name: {"column": name[0], "unit": unit} for name, unit in (("time", "s"), ("current", "A"))}
+    table |= {"current": {"column": "i", "unit": "A"}, "arm_angle": {"column": "q", "unit": "rad"}}
+    assert np.allclose(Recording.read(path, table).time, TIMES, rtol=0, atol=1e-12)
+    table["time"]["scale"] = 0.001
+    assert "column 'time': scale is 0.001, but its times have a unit of their own" in refusal(path, columns=table)

@@ -39,10 +39,11 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
         raise InputError(f"is {error}, which is not read; save('FILE.mat', '-v7')") from None
     except DamagedError:
         raise InputError("is damaged or no MATLAB file; in MATLAB: save('FILE.mat', '-v7')") from None
-    longest = max(map(len, values.values()), default=0)
+    lengths = {name: len(value) for name, value in values.items() if name not in conditions}
+    longest = max(lengths.values(), default=0)
     if "time" in values and len(values["time"]) == 1 < longest:
         values["time"], sources["time"] = _even_time(float(values["time"][0]), sources["time"], longest)
-    lengths = {name: len(value) for name, value in values.items() if name not in conditions}
+        lengths["time"] = longest
     if len(set(lengths.values())) > 1:
         raise InputError(f"its variables differ in length ({lengths}); give vectors of one length")
     return Table(values, sources)

@@ -15,6 +15,7 @@ from flexarm_env.recordings.columns import ColumnMap, Source
 from flexarm_env.recordings.formats.base import Format
 from flexarm_env.recordings.formats.extras import library
 from flexarm_env.recordings.formats.lerobot import EPISODE, FRAME, STAMP, exact_times
+from flexarm_env.recordings.formats.timestamps import check_unscaled
 from flexarm_env.recordings.headers import absence, header_sources
 from flexarm_env.recordings.messages import quoted
 from flexarm_env.recordings.table import MOST_LINES, Table
@@ -41,7 +42,7 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
     try:
         episodes = _whole_numbers(file, EPISODE) if EPISODE in names else np.zeros(0, np.int64)
         values = {
-            name: _numbers(name, file.read([column], use_threads=False).column(0), element, source.unit, arrow.types)
+            name: _numbers(name, file.read([column], use_threads=False).column(0), element, source, arrow.types)
             for name, (source, column, element) in found.items()
         }
         _check_truth(file, {column: name for name, (_, column, _) in found.items() if name not in layout.conditions}, arrow.types)
@@ -116,7 +117,7 @@ def _whole_numbers(file: Any, name: str) -> NDArray[np.int64]:
     return np.asarray(column.to_numpy(), dtype=np.int64)
 
 
-def _numbers(name: str, column: Any, element: int | None, unit: str, types: Any) -> NDArray[np.float64]:
+def _numbers(name: str, column: Any, element: int | None, source: Source, types: Any) -> NDArray[np.float64]:
     """Read the numbers of a column; times with a unit of their own are converted to that of the map."""
     kind = column.type
     is_list = types.is_list(kind) or types.is_large_list(kind) or types.is_fixed_size_list(kind)
@@ -131,8 +132,9 @@ def _numbers(name: str, column: Any, element: int | None, unit: str, types: Any)
         column = library("pyarrow.compute", "Parquet file").list_element(rows, element)
         kind = kind.value_type
     if types.is_timestamp(kind) or types.is_duration(kind):
+        check_unscaled(name, source)
         ticks = column.cast("int64").to_numpy(zero_copy_only=False)
-        return (ticks - ticks[:1]).astype(np.float64) * units.factor(kind.unit, "s") / units.factor(unit, "s")
+        return (ticks - ticks[:1]).astype(np.float64) * units.factor(kind.unit, "s") / units.factor(source.unit, "s")
     if not (types.is_integer(kind) or types.is_floating(kind) or types.is_decimal(kind) or types.is_boolean(kind)):
         raise InputError(f"column '{name}': is {quoted(str(kind))}, no numbers; name another")
     return np.asarray(column.to_numpy(zero_copy_only=False), dtype=np.float64)

@@ -7,15 +7,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import BinaryIO
 
-import numpy as np
-
 from flexarm_env import units
 from flexarm_env.errors import InputError
 from flexarm_env.recordings.cells import MOST_CELLS, count_cells, cut, is_blank, is_number, read_numbers, usual_width
 from flexarm_env.recordings.columns import ColumnMap
 from flexarm_env.recordings.conditions import add_condition
 from flexarm_env.recordings.formats.base import Format
-from flexarm_env.recordings.formats.timestamps import is_stamp, read_stamps
+from flexarm_env.recordings.formats.timestamps import check_unscaled, is_stamp, read_stamps
 from flexarm_env.recordings.headers import header_sources, states_units
 from flexarm_env.recordings.messages import quoted
 from flexarm_env.recordings.table import MOST_LINES, Table
@@ -77,9 +75,9 @@ def read_rows(rows: list[str], places: Sequence[int], header: list[str], body: i
     table = read_numbers(rows, places, numbers, width, even, layout)
     values = {name: table[:, i] for i, name in enumerate(numbers.values())}
     if stamped is not None:
+        check_unscaled("time", sources["time"])
         times = read_stamps(rows, places, stamped, layout.delimiter)
-        with np.errstate(over="ignore"):  # an overflow is reported with its row
-            values["time"] = times / units.factor(sources["time"].unit, "s", sources["time"].scale)
+        values["time"] = times / units.factor(sources["time"].unit, "s")
     return Table(values, sources, lines=[row + 1 for row in places])
 
 

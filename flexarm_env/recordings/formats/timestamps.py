@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from flexarm_env.errors import InputError
 from flexarm_env.recordings.cells import cut
+from flexarm_env.recordings.columns import Source
 from flexarm_env.recordings.messages import quoted
 
 # Possessive, so that no cell takes time that grows faster than its length.
@@ -26,6 +27,16 @@ def is_stamp(cell: str) -> bool:
         (True, True, False)
     """
     return any(form.fullmatch(cell.strip()) for form in (_STAMP, _OF_DAY))
+
+
+def check_unscaled(name: str, source: Source) -> None:
+    """Refuse a factor of a column of dates, times of day or durations, which have a unit of their own.
+
+    Raises:
+        InputError: for such a factor.
+    """
+    if source.scale != 1.0:
+        raise InputError(f"column '{name}': scale is {source.scale!r}, but its times have a unit of their own; leave scale out")
 
 
 def read_stamps(rows: Sequence[str], lines: Sequence[int], place: int, delimiter: str) -> NDArray[np.float64]:
