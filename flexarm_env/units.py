@@ -52,6 +52,7 @@ def _registry() -> pint.UnitRegistry[float]:
     registry: pint.UnitRegistry[float] = pint.UnitRegistry(on_redefinition="ignore")
     for definition in _COMPOUNDS:
         registry.define(definition)
+    registry.define("@alias turn = rev")
     return registry
 
 

@@ -29,6 +29,8 @@ from flexarm_env.errors import InputError
         ("0.02 rad/(N m)", "rad/N/m", 0.02),
         ("2 N*m/(rad/s)^2", "N*m*s**2/rad**2", 2.0),
         ("0.5 V*s/rad", "Nm/A", 0.5),
+        ("3 rev/s", "rad/s", 6.0 * np.pi),
+        ("90 rev/min", "rad/s", 3.0 * np.pi),
         ("0.02 N*m*s**2/rad", "kg*m**2", 0.02),
         ("2 V", "V/rad", 2.0),
     ],

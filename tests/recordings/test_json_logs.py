@@ -39,6 +39,12 @@ def test_entries_and_conditions_are_read(tmp_path):
     assert run.conditions == {"kp": 400.0, "enabled": 1.0}
 
 
+def test_objects_of_a_line_each_are_refused_with_a_remedy(tmp_path):
+    path = tmp_path / "log.json"
+    path.write_text('{"t": 0, "u": 1, "q": 0}\n{"t": 0.1, "u": 1, "q": 0}\n')
+    assert refusal(path, columns=MAP).endswith("; write its objects as one list, [{…}, {…}]")
+
+
 def test_a_list_of_entries_alone_is_read(tmp_path):
     places = {name: MAP[name] | {"variable": MAP[name]["variable"].removeprefix("entries.")} for name in list(MAP)[:3]}
     run = Recording.read(written(tmp_path, log()["entries"]), places)

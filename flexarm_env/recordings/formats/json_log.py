@@ -25,6 +25,8 @@ Floats = NDArray[np.float64]
 _PATH = re.compile(r"\w++(?>(?:\.\w++|\[\d{1,9}+\])*)")
 _STEP = re.compile(r"(\w+)|\[(\d+)\]")
 _MOST_SHOWN = 12
+#: In the message of Python's reader on text after an object, such as another one in the next line.
+_AFTER_THE_END = "Extra data"
 #: Parts of a log, each of which takes many times its length in memory: a gigabyte is full of as many.
 _MOST = {"objects and lists": (b"{[", 4_000_000), "values": (b",", 30_000_000)}
 
@@ -51,7 +53,8 @@ def read(content: bytes, columns: ColumnMap | None) -> Table:
     except InputError:
         raise
     except (ValueError, RecursionError) as error:
-        raise InputError(f"is damaged or no JSON: {quoted(str(error))}") from None
+        hint = "; write its objects as one list, [{…}, {…}]" if _AFTER_THE_END in str(error) else ""
+        raise InputError(f"is damaged or no JSON: {quoted(str(error))}{hint}") from None
     layout = columns or ColumnMap()
     values = {name: _column(log, name, str(one.place), name in layout.conditions) for name, one in layout.sources.items()}
     return Table(values, dict(layout.sources))
