@@ -18,7 +18,8 @@ from flexarm_env.identify.results import Diagnosis
 from flexarm_env.identify.settings import SETTINGS
 from flexarm_env.recordings.clock import RestartError
 from flexarm_env.recordings.recording import Recording
-from flexarm_env.terminal import outputs, tables
+from flexarm_env.terminal import tables
+from flexarm_env.terminal.delivery import File, deliver
 from flexarm_env.terminal.inspection_report import write_inspection
 from flexarm_env.terminal.inspection_tables import inspection
 from flexarm_env.terminal.provenance import provenance
@@ -32,29 +33,34 @@ def hand_out(
     json: Path | None,
     content: dict[str, Any],
     parts: Sequence[RenderableType],
+    files: Sequence[File] = (),
 ) -> None:
-    """Print tables, to stderr if stdout is for JSON, and write the JSON with its provenance."""
-    tables.show(tables.console(to_stderr=json == outputs.STDOUT), *parts)
-    if json is not None:
-        outputs.write_json(json, content | provenance(command, arm, recordings, seed))
+    """Write files, the JSON with its provenance among them, then print tables."""
+    made = {} if json is None else provenance(command, arm, recordings, seed)
+    deliver(json, content | made, parts, files)
 
 
-def save_findings(result: Diagnosis, save: Path | None, next_run: Path | None) -> None:
-    """Write the corrected arm and the input to record next, and print on stderr what there is none of.
+def findings(result: Diagnosis, save: Path | None, next_run: Path | None) -> list[File]:
+    """List the files of a diagnosis: the corrected arm and the input to record next, as far as there are any.
 
     Args:
         result: of the diagnosis.
         save: for the arm.
         next_run: for the input.
     """
-    if next_run is not None and result.next_run is not None:
-        write_whole(next_run, result.next_run.as_csv())
-    elif next_run is not None:
+    found: list[File] = [] if result.recordings else [(save, result.arm.save)]
+    if result.next_run is not None:
+        text = result.next_run.as_csv()
+        found.append((next_run, lambda path: write_whole(path, text)))
+    return found
+
+
+def note_missing(result: Diagnosis, save: Path | None, next_run: Path | None) -> None:
+    """Print on stderr what a diagnosis does not write. Arguments as `findings`."""
+    if next_run is not None and result.next_run is None:
         typer.echo(f"No next run is proposed, so {next_run} is not written.", err=True)
     if save is not None and result.recordings:
         typer.echo(f"The arm was not judged by these recordings, so {save} is not written.", err=True)
-    elif save is not None:
-        result.arm.save(save)
 
 
 def diagnose_restart(error: RestartError, arm: Arm, named: str, seed: int, json: Path | None, report: Path | None) -> Diagnosis:
@@ -69,11 +75,13 @@ def diagnose_restart(error: RestartError, arm: Arm, named: str, seed: int, json:
         report: for the page.
     """
     result = at_fault(arm, [restart(error)], SETTINGS)
-    hand_out("diagnose", named, [], seed, json, result.as_json(), tables.diagnosis(result))
-    if report is not None:
+
+    def write_faults(path: Path) -> None:
         from flexarm_env.pictures.page import page_of_faults
 
-        write_whole(report, page_of_faults(result))
+        write_whole(path, page_of_faults(result))
+
+    hand_out("diagnose", named, [], seed, json, result.as_json(), tables.diagnosis(result), [(report, write_faults)])
     return result
 
 
@@ -91,6 +99,6 @@ def inspect_restart(
         line: the command line, for the page.
     """
     found = overview_of_restart(arm, error)
-    hand_out("inspect", named, [], None, json, found.as_json(), inspection(found))
-    if report is not None:
-        write_inspection(report, found, line | provenance("inspect", named, [], None))
+    made = line | provenance("inspect", named, [], None)
+    files: list[File] = [(report, lambda path: write_inspection(path, found, made))]
+    hand_out("inspect", named, [], None, json, found.as_json(), inspection(found), files)

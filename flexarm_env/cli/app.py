@@ -55,15 +55,16 @@ def inspect(
         inspect_restart(error, arguments.load_arm(arm, effects), arm, json, report, given.command_line("inspect"))
         raise typer.Exit(1) from None
     from flexarm_env.terminal import identification
+    from flexarm_env.terminal.inspection_report import write_inspection
     from flexarm_env.terminal.inspection_tables import inspection
     from flexarm_env.terminal.provenance import provenance
 
     found = identification.inspect(model, runs)
-    hand_out("inspect", arm, runs, None, json, found.as_json(), inspection(found))
-    if report is not None:
-        from flexarm_env.terminal.inspection_report import write_inspection
 
-        write_inspection(report, found, given.command_line("inspect") | provenance("inspect", arm, runs, None))
+    def write(path: Path) -> None:
+        write_inspection(path, found, given.command_line("inspect") | provenance("inspect", arm, runs, None))
+
+    hand_out("inspect", arm, runs, None, json, found.as_json(), inspection(found), [(report, write)])
     if not found.is_sound:
         raise typer.Exit(1)
 
@@ -86,10 +87,13 @@ def compare(
     from flexarm_env.terminal.provenance import provenance
 
     result = identification.compare_and_inspect(model, runs, rate)
-    hand_out("compare", arm, runs, None, json, plain_data.of_comparison(result), tables.comparison(result))
-    if report is not None:
+
+    def write(path: Path) -> None:
         made = given.command_line("compare", rate=rate) | provenance("compare", arm, runs, None)
-        identification.write_page(report, runs, result, None, made)
+        identification.write_page(path, runs, result, None, made)
+
+    content = plain_data.of_comparison(result)
+    hand_out("compare", arm, runs, None, json, content, tables.comparison(result), [(report, write)])
 
 
 @app.command()
@@ -126,24 +130,27 @@ def diagnose(
         show(json)
         return
     given = arguments.Given(arguments.required(recordings, "diagnose"), arm, columns, effects)
-    from flexarm_env.cli.answers import diagnose_restart, hand_out, save_findings
+    from flexarm_env.cli.answers import diagnose_restart, findings, hand_out, note_missing
     from flexarm_env.recordings.clock import RestartError
 
     try:
         model, runs = given.load(json, report, save, next_run)
     except RestartError as error:
         result = diagnose_restart(error, arguments.load_arm(arm, effects), arm, seed, json, report)
-        save_findings(result, save, next_run)
+        note_missing(result, save, next_run)
         raise typer.Exit(1) from None
     from flexarm_env.terminal import identification, tables
     from flexarm_env.terminal.provenance import provenance
 
     result = identification.diagnose(model, runs, seed, jobs, rate, time_limit)
-    save_findings(result, save, next_run)
-    hand_out("diagnose", arm, runs, seed, json, result.as_json(), tables.diagnosis(result))
-    if report is not None:
+
+    def write(path: Path) -> None:
         made = given.command_line("diagnose", seed, rate) | provenance("diagnose", arm, runs, seed)
-        identification.write_page(report, runs, identification.compare(result.nominal, runs, rate), result, made)
+        identification.write_page(path, runs, identification.compare(result.nominal, runs, rate), result, made)
+
+    files = [*findings(result, save, next_run), (report, write)]
+    hand_out("diagnose", arm, runs, seed, json, result.as_json(), tables.diagnosis(result), files)
+    note_missing(result, save, next_run)
     if result.verdict in ("partly", "unknown", "insufficient_data", "recordings"):
         raise typer.Exit(1)
 
@@ -170,9 +177,8 @@ def add(
 
     arguments.show_faults(identification.faults(model, runs))
     result = identification.add(load_effect(effect).name if own else effect, model, runs, seed, rate)
-    hand_out("add", arm, runs, seed, json, plain_data.of_addition(result), tables.addition(result))
-    if save is not None:
-        result.arm.save(save)
+    files = [(save, result.arm.save)]
+    hand_out("add", arm, runs, seed, json, plain_data.of_addition(result), tables.addition(result), files)
     arguments.hint_at_save(save)
     if not result.error["final"] < result.error["refitted"]:
         raise typer.Exit(1)
@@ -196,9 +202,8 @@ def fit(
 
     arguments.show_faults(identification.faults(model, runs))
     result = identification.fit(model, runs, seed, rate)
-    hand_out("fit", arm, runs, seed, json, plain_data.of_fit(result), tables.fit(result))
-    if save is not None:
-        result.arm.save(save)
+    files = [(save, result.arm.save)]
+    hand_out("fit", arm, runs, seed, json, plain_data.of_fit(result), tables.fit(result), files)
     arguments.hint_at_save(save)
 
 

@@ -12,7 +12,8 @@ from rich.text import Text
 from flexarm_env.effects import Catalogue, Effect, catalogue
 from flexarm_env.effects.catalogue import LAW_PORTS, is_of_file, load_effect
 from flexarm_env.pictures import words
-from flexarm_env.terminal import outputs, tables
+from flexarm_env.terminal import tables
+from flexarm_env.terminal.delivery import deliver
 
 _FIELDS = ("equation", "looks_like", "confused_with", "source", "needs")
 
@@ -25,8 +26,7 @@ def show(name: str | None, json: Path | None) -> None:
         known, name = known.extended(effect), effect.name
     chosen = list(known.values()) if name is None else [known[name]]
     parts = [_table(known)] if name is None else _page(known[name])
-    tables.show(tables.console(to_stderr=json == outputs.STDOUT), *parts)
-    outputs.write_json(json, {effect.name: _plain(effect) for effect in chosen})
+    deliver(json, {effect.name: _plain(effect) for effect in chosen}, parts)
 
 
 def _table(known: Catalogue) -> RenderableType:

@@ -17,7 +17,8 @@ from flexarm_env.parameters import INPUTS
 from flexarm_env.pictures import words
 from flexarm_env.registration import IDS, SHAPED, VARIANTS
 from flexarm_env.tasks import CONTROL_RATE
-from flexarm_env.terminal import outputs, tables
+from flexarm_env.terminal import tables
+from flexarm_env.terminal.delivery import deliver
 
 _COLUMNS = ("id", "task", "drawn for each episode", "episode")
 
@@ -44,8 +45,7 @@ def show(arm_name: str, json: Path | None) -> None:
     ]
     parts: list[RenderableType] = [tables.text_table("Environments", _COLUMNS, rows), _common(next(iter(found.values())))]
     parts += [Text(f"Not with this arm: {', '.join(refused)} ({error})") for error in list(refused.values())[:1]]
-    tables.show(tables.console(to_stderr=json == outputs.STDOUT), *parts)
-    outputs.write_json(json, found)
+    deliver(json, found, parts)
 
 
 def _facts(id: str, arm: Arm) -> dict[str, Any]:

@@ -9,15 +9,15 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from flexarm_env.identify.settings import SETTINGS, Settings
-from flexarm_env.terminal import outputs, tables
+from flexarm_env.terminal import tables
+from flexarm_env.terminal.delivery import deliver
 
 _COLUMNS = ("name", "value", "unit", "meaning", "how found")
 
 
 def show(json: Path | None) -> None:
     """Print the settings; write their values as JSON where a file is named."""
-    tables.show(tables.console(to_stderr=json == outputs.STDOUT), *_parts(SETTINGS))
-    outputs.write_json(json, SETTINGS.as_json())
+    deliver(json, SETTINGS.as_json(), _parts(SETTINGS))
 
 
 def _parts(settings: Settings) -> list[RenderableType]:
