@@ -93,13 +93,31 @@ def read_toml(path: Path, remedy: str = "name a TOML file") -> dict[str, Any]:
     content = read_whole(path, LARGEST_TOML, remedy)
     try:
         text = content.decode("utf-8-sig")
+    except ValueError as error:
+        raise InputError(f"{path}: is not TOML: {error}") from None
+    return parse_toml(text, str(path))
+
+
+def parse_toml(text: str, where: str) -> dict[str, Any]:
+    """Parse the tables of a TOML text that may come from anyone, in time that grows as its length.
+
+    Args:
+        text: without a byte order mark.
+        where: it stands, for messages.
+
+    Raises:
+        InputError: if it is too long, or not TOML.
+    """
+    if len(text) > LARGEST_TOML:
+        raise InputError(f"{where}: is longer than {LARGEST_TOML} characters; such a text is no TOML of this program")
+    try:
         tables = None if _LONG_KEY.search(text) else tomllib.loads(text)
     except RecursionError:
         tables = None
     except ValueError as error:
-        raise InputError(f"{path}: is not TOML: {' '.join(str(error).split())}") from None
+        raise InputError(f"{where}: is not TOML: {' '.join(str(error).split())}") from None
     if tables is None or _is_deep(tables):
-        raise InputError(f"{path}: is not TOML that can be read: its values are nested too deeply")
+        raise InputError(f"{where}: is not TOML that can be read: its values are nested too deeply")
     return tables
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,7 +23,7 @@ from agents.learning.plan_file import read_table
 from flexarm_env.arm import Arm
 from flexarm_env.arm_text import arm_text
 from flexarm_env.errors import InputError
-from flexarm_env.files import check_file, write_whole
+from flexarm_env.files import check_file, parse_toml, write_whole
 from flexarm_env.wrappers import PolicyInterface
 
 FORMAT = "flexarm-policy-1"
@@ -70,7 +69,7 @@ class Artefact:
                 weights = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
             if text.get("format") != FORMAT:
                 raise InputError(f"holds no policy of format {FORMAT}; python -m agents.train makes one")
-            arm, plan = Arm.from_table(tomllib.loads(text["arm"]), path.stem), read_table(json.loads(text["plan"]))
+            arm, plan = Arm.from_table(parse_toml(text["arm"], "its arm"), path.stem), read_table(json.loads(text["plan"]))
             return cls(plan, arm, checked_weights(weights), checked_run(json.loads(text["run"])), str(path))
         except InputError as error:
             raise InputError(f"{path}: {error}") from None

@@ -128,6 +128,10 @@ def test_weights_that_are_no_finite_numbers_are_refused(trained: Artefact, tmp_p
         ("plan", '{"x": 1}', "unknown key 'x'; allowed: actions"),
         ("plan", '{"seeds": 0}', "seeds = 0"),
         ("arm", "x = 1", "unknown key 'x'"),
+        ("arm", "x", "its arm: is not TOML: "),
+        ("arm", 20_000 * "a." + "a = 1", "its arm: is not TOML that can be read"),
+        ("arm", "a = " + 5_000 * "[" + 5_000 * "]", "its arm: is not TOML that can be read"),
+        ("arm", 2_000_000 * "#", "its arm: is longer than "),
         ("format", "other", "holds no policy of format"),
     ],
 )
