@@ -17,7 +17,7 @@ from safetensors.torch import save
 from stable_baselines3.common.policies import BasePolicy
 
 from agents.learning.episodes import RATE
-from agents.learning.models import TRAINING_ONLY, bare_policy
+from agents.learning.models import TRAINING_ONLY, bare_policy, hidden_weights
 from agents.learning.options import Plan
 from agents.learning.plan_file import read_table
 from flexarm_env.arm import Arm
@@ -88,8 +88,11 @@ class Artefact:
             InputError: where the weights do not fit the plan.
         """
         interface = PolicyInterface(self.plan.interface, self.arm, interval)
-        policy = bare_policy(self.plan, interface.size)
         unfit = f"{self.source}{': ' if self.source else ''}the weights do not fit the plan: "
+        held, wanted = sum(value.numel() for value in self.weights.values()), hidden_weights(self.plan, interface.size)
+        if held < wanted:  # a plan of a few bytes may ask for a network of gigabytes
+            raise InputError(f"{unfit}its layers have {wanted} weights, and {held} are there; train again")
+        policy = bare_policy(self.plan, interface.size)
         try:
             lacking, surplus = policy.load_state_dict(dict(self.weights), strict=False)
         except RuntimeError as error:

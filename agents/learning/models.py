@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import torch
@@ -83,3 +84,11 @@ def bare_policy(plan: Plan, visible: int) -> BasePolicy:
     """Build an untrained policy with `visible` features, to be loaded with weights."""
     seen, action = spaces_of(visible, plan.interface.actions)
     return POLICIES[plan.algorithm](seen, action, lambda _: 0.0, **policy_arguments(plan, visible))
+
+
+def hidden_weights(plan: Plan, visible: int) -> int:
+    """Count the weights of the layers between the features and the last layer of a policy, without building it."""
+    network, first, count = plan.network, visible, 0
+    if plan.algorithm == "recurrent_ppo":  # each of an LSTM's four gates has two biases
+        first, count = network.memory, 4 * network.memory * (visible + network.memory + 2)
+    return count + sum((inputs + 1) * units for inputs, units in pairwise([first, *network.layers]))

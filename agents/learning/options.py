@@ -9,13 +9,15 @@ from flexarm_env.tasks import TASKS
 from flexarm_env.wrappers.options import ArmsOptions, InterfaceOptions, RewardOptions, option
 
 ALGORITHMS = ("ppo", "recurrent_ppo", "sac", "tqc")
+#: Layers of a network: policies for control have two to four, and each of the widest takes 64 MB.
+MOST_LAYERS = 16
 
 
 @dataclass(frozen=True)
 class NetworkOptions:
     """The policy's network; the critic's has the same layers."""
 
-    layers: tuple[int, ...] = option((64, 64), "units in each layer", 1, 4096)
+    layers: tuple[int, ...] = option((64, 64), "units in each layer", 1, 4096, longest=MOST_LAYERS)
     activation: str = option("tanh", "between layers", allowed=("tanh", "relu", "elu"))
     log_std: float = option(-1.5, "PPO: logarithm of the actions' standard deviation at the start", -20.0, 5.0)
     spread: str = option(

@@ -12,10 +12,21 @@ from flexarm_env.errors import InputError, did_you_mean
 
 Section = TypeVar("Section")
 
+#: Entries of a list: every lag that there is, once.
+LONGEST_LIST = 2001
 
-def option(default: Any, meaning: str, least: float = -math.inf, most: float = math.inf, allowed: Any = None) -> Any:
-    """Make a field of a section: its default, its meaning for a person, and its bounds."""
-    return field(default=default, metadata={"meaning": meaning, "least": least, "most": most, "allowed": allowed})
+
+def option(
+    default: Any,
+    meaning: str,
+    least: float = -math.inf,
+    most: float = math.inf,
+    allowed: Any = None,
+    longest: int = LONGEST_LIST,
+) -> Any:
+    """Make a field of a section: its default, its meaning for a person, and its bounds, those of each entry of a list."""
+    rules = {"meaning": meaning, "least": least, "most": most, "allowed": allowed, "longest": longest}
+    return field(default=default, metadata=rules)
 
 
 @dataclass(frozen=True)
@@ -105,6 +116,8 @@ def _value(path: str, value: Any, default: Any, rules: Mapping[str, Any]) -> Any
     if isinstance(default, tuple):
         if not isinstance(value, list | tuple):
             raise InputError(f"{path} = {value!r}; give a list such as {list(default)}")
+        if len(value) > rules["longest"]:
+            raise InputError(f"{path} has {len(value)} entries; give {rules['longest']} at most")
         return tuple(_number(path, entry, default[0] if default else 0.0, rules) for entry in value)
     if isinstance(default, bool):
         if not isinstance(value, bool):

@@ -19,9 +19,11 @@ from safetensors import safe_open
 from safetensors.torch import load_file, save_file
 from small_plans import silent, small
 
-from agents.learning.artefact import Artefact
+from agents.learning import artefact
+from agents.learning.artefact import Artefact, acting_weights
 from agents.learning.checkpoint import MARK
-from agents.learning.options import ALGORITHMS
+from agents.learning.models import bare_policy, hidden_weights
+from agents.learning.options import ALGORITHMS, MOST_LAYERS
 from agents.learning.run import train
 from agents.seal import sealed
 from flexarm_env import Arm, InputError
@@ -96,6 +98,26 @@ def test_weights_that_do_not_fit_are_refused(tmp_path: Path) -> None:
         Artefact.load(path)
 
 
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+def test_no_network_is_built_for_a_plan_that_the_weights_cannot_fill(monkeypatch: pytest.MonkeyPatch, algorithm: str) -> None:
+    made = train(small(algorithm=algorithm), 0, None, silent)
+    network = replace(made.plan.network, layers=MOST_LAYERS * (4096,), memory=4096)
+    monkeypatch.setattr(artefact, "bare_policy", lambda *_: pytest.fail("a network of gigabytes is built"))
+    with pytest.raises(InputError, match=r"the weights do not fit the plan: its layers have \d{9} weights, and \d+ are there"):
+        replace(made, plan=replace(made.plan, network=network)).agent()
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+@pytest.mark.parametrize("layers", [[], [8], [8, 5, 3]])
+def test_the_weights_of_a_plan_are_counted_as_they_are_built(algorithm: str, layers: list[int]) -> None:
+    plan, visible, last = small(algorithm=algorithm, network={"layers": layers, "memory": 4}), 7, "action_net."
+    if algorithm in ("sac", "tqc"):
+        last = "actor.mu."
+    weights = acting_weights(bare_policy(plan, visible))
+    loose = ("log_std", last, "actor.log_std.")
+    assert hidden_weights(plan, visible) == sum(each.numel() for name, each in weights.items() if not name.startswith(loose))
+
+
 @pytest.fixture(scope="module")
 def trained() -> Artefact:
     return train(small(), 0, None, silent)
@@ -127,6 +149,8 @@ def test_weights_that_are_no_finite_numbers_are_refused(trained: Artefact, tmp_p
         ("plan", "[]", "the options = [] is not a table; give some of algorithm, task"),
         ("plan", '{"x": 1}', "unknown key 'x'; allowed: actions"),
         ("plan", '{"seeds": 0}', "seeds = 0"),
+        ("plan", json.dumps({"network": {"layers": 200 * [4096]}}), "network.layers has 200 entries; give 16 at most"),
+        ("plan", json.dumps({"interface": {"lags": 5000 * [0]}}), "interface.lags has 5000 entries; give 2001 at most"),
         ("arm", "x = 1", "unknown key 'x'"),
         ("arm", "x", "its arm: is not TOML: "),
         ("arm", 20_000 * "a." + "a = 1", "its arm: is not TOML that can be read"),
