@@ -44,6 +44,13 @@ def shipped_arms() -> dict[str, Path]:
     return {path.stem: path for folder in config_folders("arms") for path in sorted(folder.glob("*.toml"))}
 
 
+def arm_path(source: str | Path) -> Path | None:
+    """Find the file of an arm, by its path or by the name of a shipped arm; None where there is none."""
+    if os.path.isfile(source):  # pathlib's raises for a name longer than any
+        return Path(source)
+    return shipped_arms().get(str(source))
+
+
 def read_arm(kind: type[Arm], source: str | Path, known: Catalogue) -> Arm:
     """Read an arm from a file or by the name of a shipped arm.
 
@@ -55,12 +62,9 @@ def read_arm(kind: type[Arm], source: str | Path, known: Catalogue) -> Arm:
     Raises:
         InputError: for a missing or faulty file: one line with file, table and key, and how to mend it.
     """
-    path = Path(source)
-    shipped = shipped_arms()
-    if str(source) in shipped and not os.path.isfile(path):
-        path = shipped[str(source)]
-    if not os.path.isfile(path):  # pathlib's raises for a name longer than any
-        raise InputError(f"no arm '{source}': neither a file nor a shipped arm{did_you_mean(str(source), shipped)}")
+    path = arm_path(source)
+    if path is None:
+        raise InputError(f"no arm '{source}': neither a file nor a shipped arm{did_you_mean(str(source), shipped_arms())}")
     table = read_toml(path)
     try:
         return arm_from_table(kind, table, path.stem, known)

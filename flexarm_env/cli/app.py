@@ -224,7 +224,7 @@ def simulate(
 ) -> None:
     """Make a recording with an arm's model."""
     given = arguments.Given([Path(input)] if input else [], arm, columns, effects)
-    arguments.check(json, save, read=given.files(), specs=effects)
+    arguments.check(json, read=given.files(), recording=save, specs=effects)
     from flexarm_env.cli import simulation
 
     model = arguments.load_arm(arm, effects)
@@ -264,7 +264,8 @@ def tune(
     json: Json = None,
 ) -> None:
     """Search for the options of a controller on an arm, with robustness among the objectives, and measure its margins."""
-    arguments.check(json, save, journal, read=[start] if start else [], specs=effects)
+    read = [*([start] if start else []), *arguments.arm_files(arm)]
+    arguments.check(json, save, journal, read=read, specs=effects)
     from flexarm_env.cli import tuning
     from flexarm_env.tuning.search import Budget
 
@@ -275,7 +276,7 @@ def tune(
 @app.command()
 def envs(arm: ArmName = "thesis", json: Json = None) -> None:
     """List the environments with an arm: task, observation, action, length of an episode."""
-    arguments.check(json)
+    arguments.check(json, read=arguments.arm_files(arm))
     from flexarm_env.cli import environments
 
     environments.show(arm, json)

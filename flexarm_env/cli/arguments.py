@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from flexarm_env.arm_file import arm_path
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -19,15 +21,28 @@ def check(
     json: Path | None,
     *places: Path | None,
     read: Sequence[Path] = (),
+    recording: Path | None = None,
     specs: Sequence[str] | None = None,
     pictures: bool = False,
 ) -> None:
-    """Refuse places that cannot be written or that are read, and pictures without their packages."""
+    """Refuse places that cannot be written or that are read, and pictures without their packages.
+
+    Args:
+        json: for the JSON.
+        places: for other files.
+        read: files and folders that must not be written over.
+        recording: for a recording.
+        specs: effects of the user's own, as "FILE.py:Name", whose files are read.
+        pictures: whether the command draws some.
+
+    Raises:
+        InputError: for such a place, and where a package is missing.
+    """
     from flexarm_env.terminal import outputs
 
     files = [Path(spec.rpartition(":")[0]) for spec in specs or () if ":" in spec]
-    outputs.check_places(json, *places, read=[*read, *files])
-    outputs.check_suffixes(json, *places)
+    outputs.check_places(json, *places, recording, read=[*read, *files])
+    outputs.check_suffixes(json, *places, recording=recording)
     if pictures:
         outputs.need_plots()
 
@@ -49,12 +64,12 @@ class Given:
     effects: Sequence[str] | None
 
     def files(self, save: Path | None = None) -> list[Path]:
-        """List the files that are read and must not be written; the arm's own file may be saved anew."""
+        """List the files that are read and must not be written; an arm's own file, but no shipped one, may be saved anew."""
         found = [*self.recordings, *([self.columns] if self.columns is not None else [])]
-        return [*found, Path(self.arm)] if Path(self.arm).is_file() and save != Path(self.arm) else found
+        return found if save == Path(self.arm) else [*found, *arm_files(self.arm)]
 
     def load(
-        self, json: Path | None, report: Path | None = None, save: Path | None = None, other: Path | None = None
+        self, json: Path | None, report: Path | None = None, save: Path | None = None, next_run: Path | None = None
     ) -> tuple[Arm, list[Recording]]:
         """Check where the command writes, then read the arm and its recordings.
 
@@ -62,16 +77,17 @@ class Given:
             json: for the JSON.
             report: for the page.
             save: for the arm.
-            other: for another file.
+            next_run: for the input to record next.
 
         Raises:
             InputError: for a place that cannot be written, and for an arm or recordings that cannot be read.
         """
         from flexarm_env.terminal import inputs, outputs
 
-        check(json, report, save, other, read=self.files(save), specs=self.effects, pictures=report is not None)
+        pictures = report is not None
+        check(json, report, save, read=self.files(save), recording=next_run, specs=self.effects, pictures=pictures)
         arm = load_arm(self.arm, self.effects)
-        outputs.check_places(json, report, save, other, read=inputs.files_read(arm, self.recordings, self.columns))
+        outputs.check_places(json, report, save, next_run, read=inputs.files_read(arm, self.recordings, self.columns))
         return arm, self._recordings(arm)
 
     def read(self) -> tuple[Arm, list[Recording]]:
@@ -104,6 +120,12 @@ def required(recordings: Sequence[Path] | None, command: str) -> Sequence[Path]:
 
         raise InputError(f"missing argument 'RECORDING…' (see flexarm {command} --help)")
     return recordings
+
+
+def arm_files(name: str) -> list[Path]:
+    """List the file of an arm, by its path or by the name of a shipped arm; none where there is none."""
+    path = arm_path(name)
+    return [] if path is None else [path]
 
 
 def load_arm(name: str, specs: Sequence[str] | None) -> Arm:

@@ -23,6 +23,8 @@ OTHER_FORMS = frozenset(
         *("pdf", "png", "jpg", "jpeg", "svg", "xls", "xlsx", "ods", "docx", "zip", "gz"),
     )
 )
+#: Suffixes of the texts that the program reads as something else than a recording in CSV.
+OTHER_TEXTS = frozenset({".toml", ".json", ".html", ".py"})
 
 
 def check_places(json: Path | None, *others: Path | None, read: Iterable[Path] = ()) -> None:
@@ -58,18 +60,24 @@ def check_places(json: Path | None, *others: Path | None, read: Iterable[Path] =
             raise InputError(f"cannot write {path}: it is there and must not be written; name another")
 
 
-def check_suffixes(*places: Path | None) -> None:
+def check_suffixes(*places: Path | None, recording: Path | None = None) -> None:
     """Refuse places for text and pages with a suffix by which other programs, and the reader of recordings, expect another form.
+
+    Args:
+        places: for anything.
+        recording: for a recording.
 
     Raises:
         InputError: for such a place.
     """
-    for path in places:
+    for path in (*places, recording):
         if path is not None and path.suffix.lower() in OTHER_FORMS:
             raise InputError(
                 f"cannot write {path}: it would be no {path.suffix} file; end it in .csv for a recording, .toml for an arm, "
                 ".html for a page or .json"
             )
+    if recording is not None and recording.suffix.lower() in OTHER_TEXTS:
+        raise InputError(f"cannot write {recording}: a recording is no {recording.suffix} file; end it in .csv")
 
 
 def need_plots() -> None:

@@ -9,6 +9,7 @@ import pytest
 from cli_stand_ins import GOOD_ARM, HEADER, OWN, ROWS
 
 import flexarm_env
+from flexarm_env import arm_file
 from flexarm_env.arm import Arm
 from flexarm_env.errors import InputError
 
@@ -106,6 +107,36 @@ def test_nothing_that_is_read_or_written_is_written_over(flexarm, identify, runs
     assert "stdout" in flexarm.refused("simulate", "--save", "-")
     assert one.read_bytes() == before
     assert identify.log == []
+
+
+def test_no_arm_that_is_read_is_written_over(flexarm, identify, runs, tmp_path, monkeypatch):
+    """A shipped one is read by its name, and not saved anew without its path being named."""
+    (tmp_path / "arms").mkdir()
+    place = tmp_path / "arms" / "ours.toml"
+    place.write_text(GOOD_ARM)
+    monkeypatch.setattr(arm_file, "config_folders", lambda kind: [tmp_path / kind])
+    for named in ("ours", place):
+        for words in (
+            ["simulate", "--arm", named, "--json", place, "--save", tmp_path / "new.csv"],
+            ["fit", runs, "--arm", named, "--json", place],
+            ["tune", "pd", "--arm", named, "--save", place],
+            ["envs", "--arm", named, "--json", place],
+        ):
+            assert "already" in flexarm.refused(*words), words
+        assert f"cannot write {place}: " in flexarm.refused("simulate", "--arm", named, "--save", place)
+    for words in (["fit", runs], ["add", "backlash", runs], ["diagnose", runs]):
+        assert "already" in flexarm.refused(*words, "--arm", "ours", "--save", place)
+    assert place.read_text() == GOOD_ARM
+    assert identify.log == []
+
+
+@pytest.mark.parametrize("suffix", [".toml", ".json", ".html", ".py"])
+def test_a_recording_is_not_written_as_what_is_read_as_something_else(flexarm, identify, runs, tmp_path, suffix):
+    place = tmp_path / f"run{suffix}"
+    for words in (["simulate", "--save", place], ["diagnose", runs, "--next-run", place]):
+        assert f"cannot write {place}: a recording is no {suffix} file; end it in .csv" in flexarm.refused(*words)
+    assert identify.log == []
+    assert not place.exists()
 
 
 JOINED = """
