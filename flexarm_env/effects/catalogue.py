@@ -98,7 +98,7 @@ def load_effect(spec: str) -> type[Effect]:
     """Load a user's effect from "FILE.py:Name". This runs the file: name only files that you trust.
 
     Raises:
-        InputError: for a file or class that is not there, or a class that is no effect.
+        InputError: for a file or class that is not there, a class that is no effect, and whatever the file raises but Ctrl-C.
     """
     import cloudpickle
 
@@ -114,7 +114,9 @@ def load_effect(spec: str) -> type[Effect]:
     sys.modules[module_name] = module
     try:
         module_spec.loader.exec_module(module)
-    except (Exception, SystemExit) as error:
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
         raise InputError(f"{path} does not load: {type(error).__name__}: {error}") from error
     cloudpickle.register_pickle_by_value(module)  # worker processes cannot import it by its name
     return _with_sources(checked(_chosen(path, name, module)))

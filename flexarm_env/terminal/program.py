@@ -81,7 +81,7 @@ class Program:
                     print(file=sys.stderr)  # ends a line that showed the progress
                 return self.complain(self.stopped, TERMINATED if came[:1] == [signal.SIGTERM] else STOPPED)
             _empty_stdout()
-            if not isinstance(error, Exception):
+            if isinstance(error, SystemExit):
                 raise
             return self._failed(error)
 
@@ -92,7 +92,7 @@ class Program:
         print(f"{self.name}: {text}" if self.name else text, file=sys.stderr)
         return code
 
-    def _failed(self, error: Exception) -> int:
+    def _failed(self, error: BaseException) -> int:
         if isinstance(error, InputError):
             return self.complain(str(error))
         if isinstance(error, BrokenPipeError):

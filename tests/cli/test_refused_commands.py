@@ -236,6 +236,19 @@ def test_an_effect_that_is_not_whole_is_refused(flexarm, runs, tmp_path, old, ne
     assert words in flexarm.refused("compare", runs, "--effects", f"{tmp_path / 'mine.py'}:Mine")
 
 
+@pytest.mark.parametrize("base", ["BaseException", "SystemExit", "GeneratorExit", "RecursionError"])
+def test_whatever_a_file_of_effects_raises_is_one_line(flexarm, runs, tmp_path, base):
+    (tmp_path / "mine.py").write_text(f"class Odd({base}): pass\nraise Odd('why')\n")
+    for words in (["compare", runs, "--effects"], ["effects"]):
+        assert "mine.py does not load: Odd: why" in flexarm.refused(*words, f"{tmp_path / 'mine.py'}:Mine")
+
+
+def test_ctrl_c_while_a_file_of_effects_runs_stops_the_command(flexarm, runs, tmp_path):
+    (tmp_path / "mine.py").write_text("raise KeyboardInterrupt\n")
+    assert flexarm("compare", runs, "--effects", f"{tmp_path / 'mine.py'}:Mine") == 130
+    assert flexarm.err == "flexarm: stopped\n"
+
+
 def test_an_effect_without_a_docstring_has_a_page(flexarm, tmp_path):
     (tmp_path / "mine.py").write_text(WHOLE)
     assert flexarm("effects", f"{tmp_path / 'mine.py'}:Mine") == 0
@@ -307,6 +320,7 @@ def test_an_effect_that_cannot_be_added_is_refused(flexarm, identify, runs, tmp_
         (KeyboardInterrupt(), 130, "stopped"),
         (OSError(28, "No space left on device", "x.csv"), 2, "No space left"),
         (np.linalg.LinAlgError("Singular matrix"), 2, "fault of the program"),
+        (BaseException("odd"), 2, "fault of the program"),
     ],
 )
 def test_whatever_goes_wrong_is_one_line(flexarm, identify, runs, monkeypatch, error, code, words):
