@@ -22,7 +22,7 @@ from benchmarks.hidden_effects.score import figures
 
 RESULTS = PROJECT / "results"
 HIDDEN = RESULTS / "hidden_effects" / "diagnose-8"
-MACHINES = RESULTS / "machines" / "seed-501115"
+MACHINES = RESULTS / "machines" / "seed-892338"
 SETTINGS_OF_PROBABILITIES = PROJECT / "flexarm_env" / "identify" / "settings" / "explaining.py"
 SERVOS = RESULTS / "elastic_joint" / "seed-414678"
 
