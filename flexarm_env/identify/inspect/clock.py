@@ -8,7 +8,7 @@ import numpy as np
 
 from flexarm_env.identify.inspect.evidence import Evidence
 from flexarm_env.identify.inspect.fault import Fault
-from flexarm_env.identify.inspect.hub_lag import hub_lag
+from flexarm_env.identify.inspect.hub_lag import beats_play, hub_lag
 from flexarm_env.identify.inspect.report import fault
 from flexarm_env.identify.inspect.series import HUB
 from flexarm_env.identify.settings import MotionFaults
@@ -38,6 +38,8 @@ def _hub_out_of_step(evidence: Evidence) -> list[Fault]:
         return []
     numbers, found = evidence.numbers, evidence.run.hub_late(evidence.gear_ratio)
     if found.share < numbers.alike or abs(found.lag) < numbers.least_lag or not found.is_within(numbers.least_factor):
+        return []
+    if not beats_play(evidence.recording, evidence.gear_ratio, found.lag, numbers):
         return []
     angle, speed = (evidence.at_once[signal].share for signal in HUB)
     return [clock_fault(evidence, HUB[0], found.lag) if angle < speed else clock_fault(evidence, HUB[1], -found.lag)]
@@ -71,10 +73,16 @@ def _is_filtered(evidence: Evidence, found: Fault) -> bool:
 
 
 def _others_are_in_time(evidence: Evidence, signal: str) -> bool:
-    """Whether a signal beside one is like the model's without a lag, and it is late against the hub's other signal."""
+    """Whether a signal beside one is like the model's without a lag, and it is late against the hub's other signal.
+
+    Play at the gears makes the hub's signals differ as well.
+    """
     numbers = evidence.numbers
-    if signal in HUB and evidence.hub is not None and evidence.hub.share > numbers.same_shape:
-        return False
+    if signal in HUB and evidence.hub is not None:
+        lag = evidence.late[signal].lag
+        behind = lag if signal == HUB[0] else -lag
+        if evidence.hub.share > numbers.same_shape or not beats_play(evidence.recording, evidence.gear_ratio, behind, numbers):
+            return False
     beside = [other for name, other in evidence.late.items() if name != signal]
     return any(other.share > numbers.similar and abs(other.lag) < numbers.same_lag for other in beside)
 

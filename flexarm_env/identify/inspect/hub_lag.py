@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +19,8 @@ Floats = NDArray[np.float64]
 def hub_lag(recording: Recording, gear_ratio: float, numbers: MotionFaults) -> Agreement:
     """Find a small lag of the angle behind the speed that leaves a fraction of what they differ by without it.
 
-    A filter of the tachometer makes the speed late, never the angle, and play or a compliant gear is no lag: it leaves most of
-    the difference.
+    A filter of the tachometer makes the speed late, never the angle. A compliant gear leaves most of the difference, and play
+    explains it as well as a lag does.
 
     Args:
         recording: with both signals.
@@ -29,9 +30,7 @@ def hub_lag(recording: Recording, gear_ratio: float, numbers: MotionFaults) -> A
     Returns:
         The agreement at that lag; `NOTHING_IN_COMMON` where there is none.
     """
-    angle, speed = (recording.signals[signal] for signal in HUB)
-    integral = _integral(*_known(recording.time, speed), gear_ratio)
-    turned = _Turned(*_known(recording.time, angle), *integral, numbers).within(numbers.longest_hub_lag)
+    turned = _Turned.of(recording, gear_ratio, numbers, numbers.longest_hub_lag)
     if len(turned.time) < numbers.least_window_cells:
         return NOTHING_IN_COMMON
     at_once = best = turned.agreement(0.0)
@@ -44,7 +43,16 @@ def hub_lag(recording: Recording, gear_ratio: float, numbers: MotionFaults) -> A
         else:
             step *= 0.5
     is_late = best.lag > numbers.least_hub_lag and best.share > numbers.alike and best.is_within(numbers.least_factor)
-    return best if is_late and 1.0 - best.share < numbers.lag_leaves * (1.0 - at_once.share) else NOTHING_IN_COMMON
+    is_right = is_late and 1.0 - best.share < numbers.lag_leaves * (1.0 - at_once.share)
+    return best if is_right and turned.beats_play(best.lag) else NOTHING_IN_COMMON
+
+
+def beats_play(recording: Recording, gear_ratio: float, lag: float, numbers: MotionFaults) -> bool:
+    """Whether a lag [s] of the angle behind the speed explains much more than play at the gears.
+
+    With play the angle is late wherever the motor turns back. Arguments as `hub_lag`.
+    """
+    return _Turned.of(recording, gear_ratio, numbers, max(abs(lag), numbers.longest_hub_lag)).beats_play(lag)
 
 
 @dataclass(frozen=True)
@@ -65,11 +73,32 @@ class _Turned:
     integral: Floats
     numbers: MotionFaults
 
+    @classmethod
+    def of(cls, recording: Recording, gear_ratio: float, numbers: MotionFaults, reach: float) -> _Turned:
+        """Integrate the speed of a recording; keep the readings of the angle beside which it is known up to a lag [s]."""
+        angle, speed = (recording.signals[signal] for signal in HUB)
+        integral = _integral(*_known(recording.time, speed), gear_ratio)
+        return cls(*_known(recording.time, angle), *integral, numbers).within(reach)
+
     def within(self, reach: float) -> _Turned:
         """Keep the readings of the angle beside which the integral is known up to a lag [s] on both sides."""
         first, last = (self.times[0], self.times[-1]) if len(self.times) else (0.0, 0.0)
         inside = (self.time >= first + reach) & (self.time <= last - reach)
         return replace(self, time=self.time[inside], angle=self.angle[inside])
+
+    def beats_play(self, lag: float) -> bool:
+        """Whether a lag [s] leaves a fraction of what play of the best width leaves."""
+        if len(self.time) < self.numbers.least_window_cells:
+            return True
+        at_once = self.agreement(0.0)
+        difference = np.sqrt(max(1.0 - at_once.share, 0.0) * at_once.power)
+        plays = [self.behind_play(width * difference).agreement(0.0) for width in self.numbers.play_widths]
+        return all(self.agreement(lag).explains_more_than(play, self.numbers) for play in plays)
+
+    def behind_play(self, width: float) -> _Turned:
+        """Let the integral move on only where it has crossed a gap of some width [rad]."""
+        half = 0.5 * width
+        return replace(self, integral=np.array(list(accumulate(self.integral, lambda at, x: min(max(at, x - half), x + half)))))
 
     def agreement(self, lag: float) -> Agreement:
         """Compare them at a lag [s], over the same readings at any."""

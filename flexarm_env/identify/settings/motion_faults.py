@@ -64,6 +64,11 @@ class MotionFaults:
     lag_leaves: float = tuned(
         0.25, "Share of the difference between angle and speed that is left at the lag of a clock, at most.", EFFECTS_OF_THE_HUB
     )
+    play_widths: tuple[float, ...] = tuned(
+        (6.0, 7.5, 9.0, 11.0, 14.0),
+        "Widths of play between motor and arm that are tried beside a lag of the angle, over its rms difference from the speed.",
+        "sixteen axes with backlash whose angle seemed late: those that fit best are 7.5 to 10.3",
+    )
     same_lag: float = tuned(0.02, "Signals whose lags differ by less are late together.", SOUND_RUNS, "s")
     unexplained: float = tuned(0.4, "A lag is worth it if it leaves less than this share of what is unexplained.", SOUND_RUNS)
     exact: float = tuned(

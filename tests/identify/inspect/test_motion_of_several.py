@@ -153,3 +153,25 @@ def test_a_drive_that_acts_late_is_an_effect_and_one_too_late_a_clock(delay, ver
     (estimate,) = (one for name, one in found.constants.items() if name.startswith(found.effects[0]))
     assert estimate.value == pytest.approx(delay, rel=CLOSE)
     assert any("late against the command" in note for note in found.notes)
+
+
+#: Motors that drive an axis through soft gears with play: constant, ratio, both inertias, stiffness, friction and gap, in SI.
+PLAY = [
+    (0.107, 3.0, 0.000427, 0.0111, 40.1, 0.005, 0.096, 0.24),
+    (0.678, 3.0, 0.00397, 0.016, 39.5, 0.0155, 0.474, 0.32),
+    (0.0614, 1.5, 0.00193, 0.00324, 16.9, 0.00586, 0.0245, 0.14),
+    (0.149, 1.0, 0.000463, 0.00102, 5.63, 0.000905, 0.0295, 0.176),
+    (0.567, 1.5, 0.0113, 0.00909, 35.9, 0.00617, 0.249, 0.17),
+]
+
+
+@pytest.mark.parametrize("numbers", PLAY)
+def test_play_on_soft_gears_is_no_lag_of_the_angle(numbers):
+    motor, ratio, motor_inertia, inertia, stiffness, viscous, coulomb, gap = numbers
+    drive = {"input": "current", "limit": 1.0, "torque_constant": motor, "gear_ratio": ratio, "motor_inertia": motor_inertia}
+    effects = {"viscous": {"coefficient": viscous}, "coulomb": {"torque": coulomb}}
+    sensors = {"arm_angle": {"resolution": 8e-4}, "motor_speed": {"noise": 0.05 * ratio}}
+    table = {"drive": drive | {"gear_stiffness": stiffness}, "hub": {"inertia": inertia}, "effects": effects, "sensors": sensors}
+    arm = Arm.from_table(table, "axis")
+    run = simulate(arm.with_effect("backlash", gap=gap), "square", duration=6.0, rate=250.0, seed=3)
+    assert motion_faults(arm, [run]) == []
