@@ -51,7 +51,7 @@ def _usage(error: Exception) -> str:
     command = context.command_path if context is not None else "flexarm"
     option = getattr(error, "option_name", None)
     commands = getattr(getattr(context, "command", None), "commands", None)
-    message = error.format_message()  # type: ignore[attr-defined]
+    message = _with_value(error, error.format_message())  # type: ignore[attr-defined]
     if type(error).__name__ == "NoSuchOption" and option and context is not None:
         allowed = [name for p in context.command.get_params(context) for name in p.opts if name.startswith("--")]
         message = f"unknown option '{option}'{did_you_mean(option, allowed)}"
@@ -60,3 +60,14 @@ def _usage(error: Exception) -> str:
         message = f"unknown command '{word}'{did_you_mean(word, commands)}"
     line = " ".join(message.split()).rstrip(".")
     return f"{line[0].lower()}{line[1:]} (see {command} --help)"
+
+
+def _with_value(error: Exception, message: str) -> str:
+    """Add the value that came to a message of Typer that names only what is allowed, as since it takes values by pydantic."""
+    faults = getattr(error.__cause__, "errors", None)
+    if faults is None:
+        return message
+    from flexarm_env.recordings.messages import quoted
+
+    where, _, allowed = message.partition(", unable to parse string")[0].partition(": ")
+    return f"{where}: {quoted(str(faults()[0]['input']))}; {allowed[0].lower()}{allowed[1:]}"

@@ -64,6 +64,24 @@ def test_a_mistyped_command_gets_one_line(flexarm, tmp_path, monkeypatch, argume
     assert words in flexarm.refused(*arguments)
 
 
+@pytest.mark.parametrize(
+    ("arguments", "allowed"),
+    [
+        (["compare", "x.csv", "--rate", "abc"], "valid"),
+        (["simulate", "--save", "x.csv", "--duration", "long"], "valid"),
+        (["diagnose", "x.csv", "--jobs", "0"], "1"),
+        (["diagnose", "x.csv", "--jobs", "257"], "256"),
+        (["diagnose", "x.csv", "--jobs", "1.5"], "valid"),
+        (["fit", "x.csv", "--seed", "-1"], "0"),
+    ],
+)
+def test_a_number_that_is_refused_is_named_beside_what_is_allowed(flexarm, arguments, allowed):
+    option, came = arguments[-2:]
+    _, _, words = flexarm.refused(*arguments).partition(f"invalid value for '{option}': ")
+    assert words.lstrip("'").startswith(came)
+    assert allowed in words.partition(came)[2].partition("(see")[0]
+
+
 @pytest.mark.parametrize("option", ["--json", "--save", "--report"])
 def test_places_that_cannot_be_written_are_refused_before_the_work(flexarm, identify, runs, tmp_path, option):
     (tmp_path / "file").write_text("")
