@@ -70,4 +70,4 @@ def _with_value(error: Exception, message: str) -> str:
     from flexarm_env.recordings.messages import quoted
 
     where, _, allowed = message.partition(", unable to parse string")[0].partition(": ")
-    return f"{where}: {quoted(str(faults()[0]['input']))}; {allowed[0].lower()}{allowed[1:]}"
+    return f"{where}: {quoted(str(faults()[0]['input']))}; {allowed[:1].lower()}{allowed[1:]}"
