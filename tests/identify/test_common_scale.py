@@ -9,7 +9,14 @@ import pytest
 
 from flexarm_env import Arm, simulate
 from flexarm_env.identify.calibrate import refine as module
-from flexarm_env.identify.calibrate.common_scale import best_scale, force_power, force_powers, rescale, scale_deviation
+from flexarm_env.identify.calibrate.common_scale import (
+    along_scale,
+    best_scale,
+    force_power,
+    force_powers,
+    rescale,
+    scale_deviation,
+)
 from flexarm_env.identify.calibrate.least_squares import cost_of, one_by_one
 from flexarm_env.identify.calibrate.objective import Objective, objective_at
 from flexarm_env.identify.calibrate.parameters import FitParameters, free_parameters
@@ -42,6 +49,14 @@ def problem_of(payload=0.0):
     return problem, problem.parameters.position(nominal), force_powers(nominal, problem.parameters)
 
 
+def deviation_of(problem, x, powers, others=0.0):
+    """Of the scale's logarithm, where a value beside it changes the residual by a share of what the scale changes it."""
+    along, prior = along_scale(problem, x, powers), problem.weights.prior
+    slopes = np.outer(along.residual, others * (powers == 0)) if along.is_open else np.zeros((1, len(x)))
+    slopes = along.correct(slopes)
+    return scale_deviation(along, problem.parameters, x, np.linalg.inv(slopes.T @ slopes + np.diag(prior**-2.0)))
+
+
 def test_motion_is_the_same_on_every_scale():
     problem, x, powers = problem_of()
     other = rescale(problem.parameters, x, powers, 0.3)
@@ -54,11 +69,9 @@ def test_motion_is_the_same_on_every_scale():
 
 def test_priors_set_a_scale_that_nothing_else_does():
     problem, x, powers = problem_of()
-    found, curvature = best_scale(problem, rescale(problem.parameters, x, powers, 0.2), powers)
+    found = best_scale(problem, rescale(problem.parameters, x, powers, 0.2), powers)
     # the priors' centres are the nominal arm's values, at x = 0
     np.testing.assert_allclose(found, x, atol=1e-4)
-    priors = np.array([c.prior for c in problem.parameters])
-    assert curvature == pytest.approx(np.sum((powers / priors) ** 2), rel=1e-3)
 
 
 @pytest.mark.parametrize("wrong", [0.3, 1.0, 2.0])
@@ -69,7 +82,7 @@ def test_a_scale_is_as_uncertain_as_the_constants_prove_wrong(wrong):
     for _ in range(100):
         true = np.where(powers, wrong * problem.weights.prior * draw.standard_normal(len(x)), x)
         shift = -(slope @ true) / (slope @ powers)  # to the best scale, where all is as near to the nominal arm as can be
-        off.append(shift / scale_deviation(problem, rescale(problem.parameters, true, powers, shift), powers))
+        off.append(shift / deviation_of(problem, rescale(problem.parameters, true, powers, shift), powers))
     # where all proves nearly right, the constant that stands for what few cannot show keeps the deviation wide
     assert 0.6 < np.sqrt(np.mean(np.square(off))) < 1.25
 
@@ -78,14 +91,20 @@ def test_a_scale_that_all_constants_agree_on_is_known_the_better():
     problem, x, powers = problem_of()
     by_priors_alone = np.sum((powers / problem.weights.prior) ** 2) ** -0.5
     # torque constant, two inertias, gears, three of friction, two of the beam, two gages
-    assert scale_deviation(problem, x, powers) == pytest.approx(by_priors_alone / np.sqrt(11), rel=0.02)
+    assert deviation_of(problem, x, powers) == pytest.approx(by_priors_alone / np.sqrt(11), rel=0.02)
 
 
 def test_a_known_payload_sets_the_scale():
     problem, x, powers = problem_of(payload=0.15)
-    found, _ = best_scale(problem, x, powers)
-    assert scale_deviation(problem, x, powers) < 0.002
+    found = best_scale(problem, x, powers)
+    assert deviation_of(problem, x, powers) < 0.002
     assert np.abs(found - x).max() < 0.005
+
+
+def test_a_payload_that_another_value_makes_up_for_does_not_set_the_scale():
+    problem, x, powers = problem_of(payload=0.15)
+    unknown, xu, pu = problem_of()
+    assert deviation_of(problem, x, powers, others=1.0) == pytest.approx(deviation_of(unknown, xu, pu), rel=0.1)
 
 
 def test_a_known_torque_constant_leaves_no_scale():
@@ -93,7 +112,7 @@ def test_a_known_torque_constant_leaves_no_scale():
     rest = FitParameters(tuple(p for p in problem.parameters if p.path != "drive.torque_constant"))
     powers = force_powers(problem.arm, rest)
     assert not powers.any()
-    assert scale_deviation(problem, x, powers) == 0.0
+    assert deviation_of(problem, x, powers) == 0.0
 
 
 def test_the_last_stretch_ends_where_the_normal_equations_say():
@@ -101,7 +120,8 @@ def test_the_last_stretch_ends_where_the_normal_equations_say():
     matrix = draw.standard_normal((30, 4)) * np.array([1e4, 1.0, 1e-3, 1.0])
     matrix[:, 3] = matrix[:, 1]  # these two show together only
     aim, prior = draw.standard_normal(30), np.array([0.1, 0.2, 0.3, 0.4])
-    found = gauss_newton(one_by_one(lambda x: matrix @ x - aim), np.array([0.3, -0.2, 0.1, 0.5]), prior, SETTINGS.refining).x
+    residuals = one_by_one(lambda x: matrix @ x - aim)
+    found = gauss_newton(residuals, lambda x, left: matrix, np.array([0.3, -0.2, 0.1, 0.5]), prior, SETTINGS.refining).x
     exact = np.linalg.solve(matrix.T @ matrix + np.diag(prior**-2.0), matrix.T @ aim)
     np.testing.assert_allclose(found, exact, atol=1e-6)
 
@@ -157,7 +177,6 @@ def test_values_are_as_uncertain_as_minima_alike_scatter(monkeypatch, rough, cou
         return [End(objective, found)] * (1 + bool(levels))
 
     monkeypatch.setattr(module, "_descend", descend)
-    monkeypatch.setattr(module, "_along_scale", lambda objective, found, powers: found)
     found = refine(problem, x)
     np.testing.assert_array_equal(found.x, x)
     np.testing.assert_allclose(found.scatter, np.std(counts, ddof=1) * along, atol=1e-12)

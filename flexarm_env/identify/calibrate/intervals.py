@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
 from flexarm_env.identify.calibrate.calibration import Calibration
-from flexarm_env.identify.calibrate.common_scale import beside_scale, force_powers, scale_deviation
+from flexarm_env.identify.calibrate.common_scale import AlongScale, along_scale, force_powers, scale_deviation
 from flexarm_env.identify.calibrate.estimate import Estimate
 from flexarm_env.identify.calibrate.least_squares import covariance, slopes
 from flexarm_env.identify.calibrate.parameters import FitParameter
@@ -31,15 +31,15 @@ def estimates(calibration: Calibration, nominal: Arm) -> list[Estimate]:
     parameters, x = calibration.parameters, calibration.solution.x
     objective = calibration.objective
     numbers = objective.dataset.settings.intervals
-    powers = force_powers(calibration.arm, parameters)
-    variance = _scatter(calibration, powers) + (0.0 if calibration.moved is None else calibration.moved**2)
     objective = replace(objective, weights=replace(objective.weights, sigma=calibration.rms_errors, prior=parameters.priors))
-    common = scale_deviation(objective, x, powers)
+    along = along_scale(objective, x, force_powers(calibration.arm, parameters))
+    spreads = _spreads(calibration, along)
+    scatter = np.max([np.diag(along.beside @ spread @ along.beside.T) for spread in spreads], axis=0)
+    common = max(scale_deviation(along, parameters, x, spread) for spread in spreads)
     bias = np.hypot(numbers.best_model, np.sqrt(calibration.unexplained) * numbers.wrong_model)
-    relative = np.hypot(bias, common * np.abs(powers))
     sizes = [abs(p.value(v)) / p.scale if p.scale else 1.0 for p, v in parameters.pairs(x)]
-    least = relative * np.array(sizes)
-    sigma = np.sqrt(variance + np.square(least))
+    moved = 0.0 if calibration.moved is None else calibration.moved
+    sigma = np.sqrt(scatter + np.square(moved) + np.square(bias * np.array(sizes)) + np.square(common * along.x))
     triples = zip(parameters, x, sigma, strict=True)
     return [_estimate(p, float(v), float(numbers.quantile * s), nominal) for p, v, s in triples]
 
@@ -53,23 +53,18 @@ def _estimate(parameter: FitParameter, x: float, half_width: float, nominal: Arm
     return Estimate(parameter.path, parameter.value(x), low, high, unit, before)
 
 
-def _scatter(calibration: Calibration, powers: NDArray[np.int64]) -> Floats:
-    """Estimate the variance of each x (x,) from the residual, weighed by what is left, but for the common scale of forces.
+def _spreads(calibration: Calibration, along: AlongScale) -> list[Floats]:
+    """Estimate the covariance of x (x, x) from the residual, weighed by what is left, by wide differences and by narrow ones.
 
-    By differences as wide as the fit's and by narrow ones, whichever gives more. Wide ones show motion where values that change
-    together leave none. Narrow ones show changes that sticking covers.
+    Those as wide as the fit's show motion where values that change together leave none. Narrow ones show changes that sticking
+    covers. Of both, the one that gives more counts.
     """
     objective, solution = calibration.objective, calibration.solution
     settings, x, prior = objective.dataset.settings, solution.x, objective.parameters.priors
     block = max(int(settings.intervals.block / objective.dataset.interval), 1) * len(objective.dataset.signals)
-    beside = beside_scale(powers, prior)
     narrow = calibration.narrow
     if narrow is None:
         narrow = slopes(objective.residuals, x, solution.residual, np.full(len(x), settings.refining.difference))
     by_left = objective.rows_of(objective.weights.sigma / calibration.rms_errors)
-    variances = []
-    for changes in (solution.jacobian, narrow):
-        spread = covariance(changes * by_left[:, None], solution.residual * by_left, prior, block)
-        variances.append(np.diag(beside @ spread @ beside.T))
-    largest: Floats = np.maximum.reduce([*variances, np.zeros(len(x))])
-    return largest
+    slopes_by_left = [along.correct(changes * by_left[:, None]) for changes in (solution.jacobian, narrow)]
+    return [covariance(changes, solution.residual * by_left, prior, block) for changes in slopes_by_left]

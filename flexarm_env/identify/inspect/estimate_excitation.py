@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexarm_env.arm import Arm
-from flexarm_env.identify.calibrate.common_scale import force_powers, rescale
+from flexarm_env.identify.calibrate.common_scale import AlongScale, along_scale, force_powers
 from flexarm_env.identify.calibrate.least_squares import jacobian
 from flexarm_env.identify.calibrate.objective import Objective, Weights
 from flexarm_env.identify.calibrate.parameters import FitParameter, free_parameters
@@ -34,12 +34,10 @@ from flexarm_env.identify.replay.observer import innovation_sigma
 from flexarm_env.identify.replay.scales import torque_scale
 from flexarm_env.identify.select.effect_size import Rise, sizeable, smallest_detectable
 from flexarm_env.identify.select.signatures import Baseline, baseline_of
-from flexarm_env.identify.settings import FAILED_ERROR, LEAST_NORM, SETTINGS, Settings
+from flexarm_env.identify.settings import FAILED_ERROR, SETTINGS, Settings
 from flexarm_env.recordings.recording import Recording
 
 Floats = NDArray[np.float64]
-#: Change of x (x,) and of the residual (rows,) per change of the logarithm of the common scale.
-Along = tuple[Floats, Floats]
 
 
 def estimate_excitation(
@@ -83,7 +81,7 @@ def excitation_of(arm: Arm, dataset: Dataset, progress: Progress) -> Excitation:
     for number, name in enumerate(names):
         effects.at(number / len(names), name)
         found.append(_effect(base, name, rise_of))
-    along = _along_common_scale(base)
+    along = along_scale(base.objective, base.x, force_powers(base.arm, base.objective.parameters))
     return Excitation(tuple(_constants(base, along)), tuple(found), _common_scale(base, along))
 
 
@@ -101,21 +99,25 @@ def _baseline(arm: Arm, dataset: Dataset) -> Baseline:
     return baseline_of(objective, steps.adapted(np.ones(len(wide.residual)), wide.jacobian, grow=True).now)
 
 
-def _constants(base: Baseline, along: Along) -> list[ConstantExcitation]:
+def _constants(base: Baseline, along: AlongScale) -> list[ConstantExcitation]:
     """Estimate the interval of each constant, over wide differences and over narrow ones, whichever gives more."""
     objective, settings = base.objective, base.objective.dataset.settings
     parameters = objective.parameters
     narrow = jacobian(objective.residuals, base.x, np.full(len(base.x), settings.refining.difference))
-    posterior = np.maximum(_deviations(base, base.jacobian, along), _deviations(base, narrow, along))
+    posterior = np.maximum(_deviations(base.jacobian, along), _deviations(narrow, along))
     triples = zip(parameters, parameters.priors, posterior, strict=True)
     return [_constant(base.arm, parameter, float(prior), float(after), settings) for parameter, prior, after in triples]
 
 
-def _deviations(base: Baseline, slopes: Floats, along: Along) -> Floats:
+def _deviations(slopes: Floats, along: AlongScale) -> Floats:
     """Estimate the standard deviations (x,) that slopes of the innovations (rows, x) and the priors leave."""
-    exact = _with_common_scale(slopes, along)
-    information = exact.T @ exact + np.diag(base.objective.parameters.priors**-2.0)
-    return np.asarray(np.sqrt(np.diag(np.linalg.inv(information))), dtype=np.float64)
+    return np.asarray(np.sqrt(np.diag(_posterior(slopes, along))), dtype=np.float64)
+
+
+def _posterior(slopes: Floats, along: AlongScale) -> Floats:
+    """Estimate the covariance of x (x, x) that slopes of the innovations (rows, x) and the priors leave."""
+    exact = along.correct(slopes)
+    return np.asarray(np.linalg.inv(exact.T @ exact + np.diag(along.prior**-2.0)), dtype=np.float64)
 
 
 def _constant(arm: Arm, parameter: FitParameter, prior: float, posterior: float, settings: Settings) -> ConstantExcitation:
@@ -128,34 +130,13 @@ def _constant(arm: Arm, parameter: FitParameter, prior: float, posterior: float,
     return ConstantExcitation(parameter.path, value, half_width, width * prior, arm.parameter(parameter.path).unit, state)
 
 
-def _with_common_scale(slopes: Floats, along: Along) -> Floats:
-    """Correct slopes (rows, x) along the common scale of forces.
-
-    Most motion does not show it, and differences of one value at a time are not exact enough to show that nothing changes.
-    """
-    moved, change = along
-    return slopes + np.outer(change - slopes @ moved, moved / max(float(moved @ moved), LEAST_NORM))
-
-
-def _common_scale(base: Baseline, along: Along) -> str:
+def _common_scale(base: Baseline, along: AlongScale) -> str:
     """Judge whether the innovations give the common scale better than the priors together."""
-    moved, change = along
-    if not moved.any():
+    if not along.is_open:
         return ""
-    of_priors = float(np.sum((moved / base.objective.parameters.priors) ** 2))
+    variance = float(along.share @ _posterior(base.jacobian, along) @ along.share)
     shown = base.objective.dataset.settings.excitation.shown
-    return SHOWN if of_priors <= shown**2 * (of_priors + float(change @ change)) else NOT_SHOWN
-
-
-def _along_common_scale(base: Baseline) -> Along:
-    """Compute the change of x (x,) and of the residual (rows,) per change of the common scale's logarithm."""
-    objective, parameters = base.objective, base.objective.parameters
-    powers = force_powers(base.arm, parameters)
-    if not powers.any():
-        return np.zeros(len(base.x)), np.zeros(len(base.residual))
-    step = objective.dataset.settings.refining.scale_step
-    above, below = (rescale(parameters, base.x, powers, shift) for shift in (step, -step))
-    return (above - below) / (2 * step), (objective.residual(above) - objective.residual(below)) / (2 * step)
+    return SHOWN if along.of_priors * variance <= shown**2 else NOT_SHOWN
 
 
 def _rise_against(arm: Arm, dataset: Dataset) -> Rise:
