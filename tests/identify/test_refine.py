@@ -24,6 +24,6 @@ def test_steps_end_where_values_are_seen_together_alone(seed, scale):
         assert calls[0] < 2000, "the steps do not end"
         return seen @ x - wanted
 
-    found = gauss_newton(one_by_one(residual), lambda x, left: seen, 1e-3 * np.ones(4) / scale, np.ones(4), SETTINGS.refining)
+    found = gauss_newton(one_by_one(residual), 1e-3 * np.ones(4) / scale, np.ones(4), SETTINGS.refining)
     best = np.linalg.lstsq(seen, wanted, rcond=1e-7)[0]
     assert found.cost <= 1.01 * np.sum((seen @ best - wanted) ** 2) + 1e-6

@@ -7,21 +7,19 @@ the free replay.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from flexarm_env.identify.calibrate.common_scale import along_scale, best_scale, force_powers
+from flexarm_env.identify.calibrate.common_scale import best_scale, force_powers
 from flexarm_env.identify.calibrate.least_squares import Residuals, cost_of, secant_correction, slopes
 from flexarm_env.identify.calibrate.objective import Objective, objective_at
 from flexarm_env.identify.replay.scales import torque_scale
 from flexarm_env.identify.settings import LEAST_NORM, Refining
 
 Floats = NDArray[np.float64]
-#: The Jacobian (rows, x) at x (x,), where the residual (rows,) is known.
-SlopesAt = Callable[[Floats, Floats], Floats]
 
 
 @dataclass(frozen=True)
@@ -33,7 +31,7 @@ class Refined:
         residual: there (rows,).
         cost: sum of squares of residual and prior.
         jacobian: (rows, x) of narrow differences, corrected along the steps; None where none were taken.
-        scatter: (x,) standard deviation of the minima that were found; none where there is one.
+        scatter: (x,) standard deviation of the minima that were found, each on its best scale; none where there is one.
     """
 
     x: Floats
@@ -43,7 +41,7 @@ class Refined:
     scatter: Floats | float = 0.0
 
 
-def gauss_newton(residuals: Residuals, slopes_at: SlopesAt, x: Floats, prior: Floats, numbers: Refining) -> Refined:
+def gauss_newton(residuals: Residuals, x: Floats, prior: Floats, numbers: Refining) -> Refined:
     """Minimise |residual(x)|² + |x / prior|² by damped Gauss–Newton steps, which each correct the Jacobian.
 
     The steps end where one promises less than chance, or gives much less than it promised. The Jacobian is then computed anew if
@@ -51,15 +49,15 @@ def gauss_newton(residuals: Residuals, slopes_at: SlopesAt, x: Floats, prior: Fl
 
     Args:
         residuals: whitened residuals (rows,) at some points.
-        slopes_at: gives the Jacobian at x, where the residual is known.
         x: where to start (x,).
         prior: standard deviation of each x around 0.
-        numbers: dampings and stopping rule.
+        numbers: differences, dampings and stopping rule.
     """
     r = residuals([x])[0]
     here = Refined(x, r, cost_of(r, x, prior), None)
     for _ in range(numbers.iterations):
-        before, here, keeps = here.cost, replace(here, jacobian=slopes_at(here.x, here.residual)), True
+        j = slopes(residuals, here.x, here.residual, np.full(len(x), numbers.difference))
+        before, here, keeps = here.cost, replace(here, jacobian=j), True
         while keeps:
             ahead, promised = _step(residuals, here, prior, numbers)
             keeps, here = here.cost - ahead.cost > numbers.kept * promised, ahead
@@ -100,13 +98,13 @@ def refine(objective: Objective, x: Floats) -> Refined:
     """
     dataset = objective.dataset
     errors, process_noise = dataset.settings.errors, dataset.settings.process_noise
-    x = best_scale(objective, x, force_powers(objective.arm, objective.parameters))
+    powers = force_powers(objective.arm, objective.parameters)
+    x = best_scale(objective, x, powers)
     if not len(x) or objective.excess_factor > errors.close:
-        residual = objective.residual(x)
-        return Refined(x, residual, cost_of(residual, x, objective.weights.prior), None)
+        return _at(objective, x, None)
     *smooth, first = _descend(objective, x, process_noise.refinement)
     if not smooth:
-        return first.found
+        return _along_scale(objective, first.found, powers)
     ends = [first, *_descend(objective, x, ())]
     if max(end.error for end in ends) > errors.converged * _best(ends).error:
         *_, again = _descend(objective, first.found.x, process_noise.refinement)
@@ -117,8 +115,30 @@ def refine(objective: Objective, x: Floats) -> Refined:
         starts = (best.found.x - aside, best.found.x + aside)
         ends += [_descend(objective, start, process_noise.refinement_aside)[-1] for start in starts]
         best = _best(ends)
-    alike = [end.found.x for end in ends if end.error <= dataset.settings.refining.alike * best.error]
-    return replace(best.found, scatter=np.std(alike, axis=0, ddof=1) if len(alike) > 1 else 0.0)
+    found = _along_scale(objective, best.found, powers)
+    alike = [end for end in ends if end is not best and end.error <= dataset.settings.refining.alike * best.error]
+    minima = [found.x, *(best_scale(objective, end.found.x, powers) for end in alike)]
+    return replace(found, scatter=np.std(minima, axis=0, ddof=1) if alike else 0.0)
+
+
+def _along_scale(objective: Objective, found: Refined, powers: NDArray[np.int64]) -> Refined:
+    """Move to the best common scale; where that gains more than two ends of one fit differ by, take more steps, in turn."""
+
+    def at_best_scale(here: Refined) -> Refined:
+        x = best_scale(objective, here.x, powers)
+        return here if np.array_equal(x, here.x) else _at(objective, x, here.jacobian)
+
+    least = objective.dataset.settings.errors.converged**2
+    ahead = at_best_scale(found)
+    while found.cost > least * ahead.cost:
+        found, ahead = ahead, at_best_scale(_descend(objective, ahead.x, ())[-1].found)
+    return ahead
+
+
+def _at(objective: Objective, x: Floats, near: Floats | None) -> Refined:
+    """Evaluate an objective at x, with a Jacobian from near by."""
+    residual = objective.residual(x)
+    return Refined(x, residual, cost_of(residual, x, objective.weights.prior), near)
 
 
 @dataclass(frozen=True)
@@ -158,20 +178,9 @@ def _descend(objective: Objective, x: Floats, levels: Sequence[float]) -> list[_
     numbers, ends = objective.dataset.settings.refining, []
     for noise in [*(level * scale for level in levels if level * scale > own), own]:
         level = objective if noise == own else _at_level(objective, x, noise)
-        ends.append(_End(level, gauss_newton(level.residuals, _slopes_of(level), x, level.weights.prior, numbers)))
+        ends.append(_End(level, gauss_newton(level.residuals, x, level.weights.prior, numbers)))
         x = ends[-1].found.x
     return ends
-
-
-def _slopes_of(level: Objective) -> SlopesAt:
-    """Make the function that gives slopes of an objective by narrow differences, exact along the common scale."""
-    powers = force_powers(level.arm, level.parameters)
-    width = level.dataset.settings.refining.difference
-
-    def slopes_at(x: Floats, residual: Floats) -> Floats:
-        return along_scale(level, x, powers).correct(slopes(level.residuals, x, residual, np.full(len(x), width)))
-
-    return slopes_at
 
 
 def _at_level(objective: Objective, x: Floats, torque_noise: float) -> Objective:
