@@ -131,7 +131,7 @@ def body_keeps_state(a: Arrays, body: int, moves: bool, table: StepTable, places
     offset = dot(d, here + n[at.HOLD_DRIVERS] + body * n[at.DRIVERS], w, places.inputs, n[at.DRIVERS])
     angle, load = s[at.HELD_HUB + body], load_now(d, n, s, mode)
     high, low = static_budget(d, n, s, body, 1.0, angle, load), static_budget(d, n, s, body, -1.0, angle, load)
-    return max(before, after) + offset + bend < high and min(before, after) + offset - bend > -low
+    return max(before, after) + offset + bend <= high and min(before, after) + offset - bend >= -low  # 0 where nothing pushes
 
 
 @njit(forceinline=True)

@@ -63,7 +63,10 @@ def prepare(d: Numbers, n: Places) -> None:
 
 @njit(forceinline=True)
 def limits(a: Arrays, here: int, stuck: bool, command: float, torque: float) -> tuple[float, float, float, float]:
-    """Compute (torque on the hub, offset, low, high): no event while the row on z plus offset stays between the two."""
+    """Compute (torque on the hub, offset, low, high): no event while the row on z plus offset stays between the two.
+
+    A held hub stays so at the limits too, as one without a push where friction at rest is 0.
+    """
     d, n, s = a.d, a.n, a.s
     direction, held, time = s[at.HUB_DIRECTION], s[at.HELD_HUB], s[at.TIME]
     if stuck:
@@ -109,7 +112,8 @@ def quiet_step(a: Arrays, command: float, length: float, slot: int) -> bool:
         bend += d[place + at.Q_BEND] * math.sqrt(c0 * x * x + y * y)
         w[2 * k], w[2 * k + 1] = new_p, new_q
         place += at.QUIET_SIZE
-    if min(before, after) - bend <= low or max(before, after) + bend >= high:
+    least, most = min(before, after) - bend, max(before, after) + bend
+    if not (low <= least and most <= high if mode == 1 else low < least and most < high):
         return False
     for i in range(2 * n[at.BLOCKS]):
         s[at.Z_START + i] = w[i]

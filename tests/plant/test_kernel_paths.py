@@ -107,6 +107,17 @@ def test_replay_may_be_cut_anywhere():
     assert np.array_equal(np.vstack(parts), whole)
 
 
+@pytest.mark.parametrize("effect", ["asymmetric_coulomb", "asymmetric_viscous", "load_friction", "shear_thinning"])
+@pytest.mark.parametrize("name", ["cu-rigid", "cu-flexible"])
+def test_a_hub_at_rest_without_a_push_takes_whole_steps_though_no_friction_holds_it(name, effect):
+    """Time then adds up as whole steps do, to the last bit; a recording that begins at rest would else be full of events."""
+    arm, interval = Arm.load(name), 0.003
+    plant = arm.with_effect(effect, **arm.known[effect].starts()[0]).plant(interval)
+    plant.place()
+    plant.replay(np.zeros(1001))
+    assert plant.state[at.TIME] == sum([interval] * 1000)
+
+
 @pytest.mark.parametrize("beside", [0.0, 1e-6, 1e9])
 @pytest.mark.parametrize("damping", [-0.05, 0.0, 1e-7, 0.3, 3.0, 40.0])
 @pytest.mark.parametrize("stiffness", [0.0, 1e-8, 1e-4, 0.09, 1.0, 400.0])
