@@ -72,6 +72,9 @@ def test_priors_set_a_scale_that_nothing_else_does():
     found = best_scale(problem, rescale(problem.parameters, x, powers, 0.2), powers)
     # the priors' centres are the nominal arm's values, at x = 0
     np.testing.assert_allclose(found, x, atol=1e-4)
+    along, priors = along_scale(problem, x, powers), np.array([c.prior for c in problem.parameters])
+    assert along.of_priors == pytest.approx(np.sum((powers / priors) ** 2), rel=1e-3)
+    assert along.residual @ along.residual < 1e-3 * along.of_priors
 
 
 @pytest.mark.parametrize("wrong", [0.3, 1.0, 2.0])
