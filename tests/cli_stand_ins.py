@@ -15,6 +15,13 @@ from flexarm_env.recordings.recording import Recording
 HEADER = "time [s],current [A],arm_angle [rad]\n"
 
 ROWS = "0,1,0\n0.1,1,0.1\n0.2,0,0.2\n"
+#: Of the same rows by index, whatever the header says.
+MAP = """
+[columns]
+time = {index = 0, unit = 's'}
+current = {index = 1, unit = 'A'}
+arm_angle = {index = 2, unit = 'rad'}
+"""
 
 OWN = '''
 from flexarm_env.effects import Effect
