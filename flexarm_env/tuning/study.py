@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+import os
 import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -51,8 +53,11 @@ class Study:
         try:
             storage = _storage(journal)
             self._study = optuna.create_study(study_name=name, storage=storage, load_if_exists=True, direction="minimize")
-        except (ValueError, KeyError, AssertionError, OSError):
-            raise InputError(f"{journal}: is no journal of a search; name another file, or a new one") from None
+            sound = all(map(self._is_sound, self.finished()))
+        except Exception:  # Optuna lets through whatever it meets in a damaged file
+            sound = False
+        if not sound:
+            raise InputError(f"{journal}: is no journal of a search, or a damaged one; name another file, or a new one")
 
     def run(
         self,
@@ -96,6 +101,11 @@ class Study:
         found: list[Any] = self._study.get_trials(deepcopy=False, states=(complete,))
         return found
 
+    def _is_sound(self, trial: Any) -> bool:
+        """Whether a trial has a score and values of this search."""
+        known = trial.params.keys() == self.space.keys()
+        return known and all(map(math.isfinite, (trial.value, *trial.params.values())))
+
     def best(self) -> tuple[dict[str, float], float]:
         """Find the values of the least score, and that score."""
         least = min(self.finished(), key=lambda trial: trial.value)
@@ -106,13 +116,20 @@ def _storage(journal: Path | None) -> Any:
     if journal is None:
         return None
     from optuna.storages import JournalStorage
-    from optuna.storages.journal import JournalFileBackend
+    from optuna.storages.journal import JournalFileBackend, JournalFileSymlinkLock
 
     if journal.exists() and (not journal.is_file() or not _begins_as_journal(journal)):
         raise ValueError  # before Optuna adds a line to it
+    lock = JournalFileSymlinkLock(str(journal))
+    if journal.exists():
+        lock.acquire()  # another process that shares the journal may be within a line
+        try:
+            _drop_unfinished_line(journal)
+        finally:
+            lock.release()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # experimental, to Optuna
-        return JournalStorage(JournalFileBackend(str(journal)))
+        return JournalStorage(JournalFileBackend(str(journal), lock))
 
 
 def _begins_as_journal(path: Path) -> bool:
@@ -122,3 +139,11 @@ def _begins_as_journal(path: Path) -> bool:
         return not line or "op_code" in json.loads(line)
     except (ValueError, TypeError, RecursionError):
         return False
+
+
+def _drop_unfinished_line(journal: Path) -> None:
+    """Cut off a last line that a killed process left unfinished, to which Optuna would add the next one."""
+    content = journal.read_bytes()
+    whole = content.rfind(b"\n") + 1
+    if whole != len(content):
+        os.truncate(journal, whole)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 
 import pytest
@@ -72,6 +73,42 @@ def test_a_file_that_is_no_journal_is_refused(tmp_path, content) -> None:
         Study("bowl", SPACE, tmp_path / "a.journal")
     assert "\n" not in str(error.value)
     assert (tmp_path / "a.journal").read_bytes() == content
+
+
+def test_a_search_goes_on_though_it_was_killed_within_a_line_of_its_journal(tmp_path) -> None:
+    place = tmp_path / "search.journal"
+    Study("bowl", SPACE, place).run(6, 0, bowl)
+    place.write_bytes(place.read_bytes()[:-20])
+    resumed = Study("bowl", SPACE, place)
+    assert len(resumed.finished()) == 5
+    resumed.run(8, 0, bowl)
+    whole = Study("bowl", SPACE)
+    whole.run(8, 0, bowl)
+    assert resumed.best() == whole.best() == Study("bowl", SPACE, place).best()
+
+
+@pytest.mark.parametrize(
+    ("pattern", "text"),
+    [
+        (rb'"values":\[[^]]*\]', b'"values":[]'),
+        (rb'"values":\[[^]]*\]', b'"values":null'),
+        (rb'"values":\[[^]]*\]', b'"values":[NaN]'),
+        (rb'"values":\[[^]]*\]', b'"values":[-Infinity]'),
+        (rb'"values":\[[^]]*\]', b'"values":["x",1]'),
+        (rb'"param_value_internal":[^,]*', b'"param_value_internal":NaN'),
+        (rb'"low', b'"lew'),
+        (rb'"param_name":"x"', b'"param_name":"z"'),
+        (rb"\n", b"\n[]\n"),
+        (rb"\n", b"\n" + b"[" * 100_000 + b"\n"),
+    ],
+)
+def test_a_damaged_journal_is_refused(tmp_path, pattern, text) -> None:
+    place = tmp_path / "search.journal"
+    Study("bowl", SPACE, place).run(4, 0, bowl)
+    place.write_bytes(re.sub(pattern, text, place.read_bytes(), count=4))
+    with pytest.raises(InputError, match="or a damaged one; name another file") as error:
+        Study("bowl", SPACE, place)
+    assert "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize("name", SPACES)
