@@ -6,6 +6,7 @@ import functools
 import math
 import re
 from collections.abc import Sequence
+from numbers import Real
 from typing import TYPE_CHECKING
 
 from flexarm_env.errors import InputError, did_you_mean
@@ -186,6 +187,19 @@ def as_float(value: float) -> float:
         return float(value)
     except OverflowError:
         return math.inf if value > 0 else -math.inf
+
+
+def is_finite(value: object) -> bool:
+    """Whether a value is a real number within the range of floats.
+
+    Example:
+        >>> is_finite(3), is_finite(10**400), is_finite("3")
+        (True, False, False)
+    """
+    try:
+        return isinstance(value, Real) and math.isfinite(value)
+    except OverflowError:
+        return False
 
 
 def is_quantity(text: str) -> bool:

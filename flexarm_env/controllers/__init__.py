@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import inspect
-import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, get_args, get_type_hints
 
+from flexarm_env import units
 from flexarm_env.arm import Arm
 from flexarm_env.controllers.base import Controller
 from flexarm_env.controllers.filtered import FilteredVibrationSuppression
@@ -135,7 +135,7 @@ def _check(name: str, recipe: Recipe, options: Mapping[str, Any]) -> None:
             types, meaning = TYPES[kind]
             if value is None and type(None) in get_args(hint):
                 continue
-            if type(value) not in types or not math.isfinite(value if kind is not str else 0) or (kind is int and value < 1):
+            if type(value) not in types or not (kind is str or units.is_finite(value)) or (kind is int and value < 1):
                 raise InputError(f"controller '{name}': {option} = {value!r}; give {meaning}")
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any, TypeVar
 
+from flexarm_env import units
 from flexarm_env.errors import InputError, did_you_mean
 
 D = TypeVar("D", bound="Design")
@@ -21,7 +21,7 @@ class Design:
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
             number = isinstance(value, int | float) and not isinstance(value, bool)
-            if not (number and math.isfinite(value) and value >= 0.0):
+            if not (number and units.is_finite(value) and value >= 0.0):
                 raise InputError(f"design: {name} = {value!r}; give a finite number from 0 up")
             if value == 0.0 and name not in self.may_vanish():
                 raise InputError(f"design: {name} = 0; give a positive number")

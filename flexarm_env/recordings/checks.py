@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flexarm_env import units
 from flexarm_env.errors import InputError
 from flexarm_env.recordings.clock import step_back_error
 from flexarm_env.recordings.conditions import check_spelling
@@ -28,7 +28,7 @@ _REMEDIES = {
 
 
 def as_vector(name: str, values: ArrayLike) -> Floats:
-    """Copy numbers into a vector of floats (n,).
+    """Copy numbers into a vector of floats (n,); NaN where a masked array has a mask.
 
     Raises:
         InputError: for anything but a vector of real numbers.
@@ -39,7 +39,10 @@ def as_vector(name: str, values: ArrayLike) -> Floats:
         array = np.array(None)
     if array.ndim != 1 or array.dtype.kind not in "fiu":
         raise InputError(f"'{name}' is no vector of real numbers; give an array of shape (n,)")
-    return array.astype(np.float64, copy=False)
+    with np.errstate(over="ignore"):  # a longer float may overflow to infinity, which the checks refuse
+        floats = array.astype(np.float64, copy=False)
+    floats[np.ma.getmask(values)] = np.nan
+    return floats
 
 
 def check_values(arrays: Mapping[str, Floats], lines: Sequence[int]) -> None:
@@ -138,8 +141,9 @@ def check_conditions(conditions: Mapping[str, float]) -> None:
         InputError: for a name that is none or misspells a known one, or a value that is not finite, or a negative payload.
     """
     for name, value in conditions.items():
-        if not name.isidentifier() or not name.isascii():
+        if not isinstance(name, str) or not name.isidentifier() or not name.isascii():
             raise InputError(f"condition {name!r}: write its name in letters, digits and _")
         check_spelling(name)
-        if not math.isfinite(value) or (name == "payload" and value < 0):
-            raise InputError(f"condition '{name}' is {value}; write a finite number, for payload one not below 0")
+        if not units.is_finite(value) or (name == "payload" and value < 0):
+            shown = value if isinstance(value, float) else repr(value)
+            raise InputError(f"condition '{name}' is {shown}; write a finite number, for payload one not below 0")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -238,5 +237,5 @@ def check_calibration(calibration: Mapping[str, float]) -> None:
     for name, gain in calibration.items():
         if name not in CALIBRATED:
             raise InputError(f"calibration: unknown signal {name!r}{did_you_mean(str(name), CALIBRATED)}")
-        if not math.isfinite(gain) or gain == 0:
-            raise InputError(f"calibration: '{name}' is {gain}; give its {UNITS[name]} per volt")
+        if not units.is_finite(gain) or gain == 0:
+            raise InputError(f"calibration: '{name}' is {gain!r}; give its {UNITS[name]} per volt")

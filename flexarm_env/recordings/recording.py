@@ -138,11 +138,14 @@ class Recording(Shown):
             >>> run
             Recording('run': 100 samples, 0.99 s at 100 Hz, current -> arm_angle)
         """
-        if input_kind not in INPUTS:
-            raise InputError(f"{name}: unknown input {input_kind!r}{did_you_mean(input_kind, INPUTS)}")
+        if not isinstance(input_kind, str) or input_kind not in INPUTS:
+            raise InputError(f"{name}: unknown input {input_kind!r}{did_you_mean(str(input_kind), INPUTS)}")
+        for what, table in (("signals", signals), ("conditions", conditions or {})):
+            if not hasattr(table, "keys"):
+                raise InputError(f"{name}: {what} = {table!r}; give a dict, with the name of each")
         for signal in signals:
             if signal not in known_sensors():
-                raise InputError(f"{name}: unknown signal {signal!r}{did_you_mean(signal, known_sensors())}")
+                raise InputError(f"{name}: unknown signal {signal!r}{did_you_mean(str(signal), known_sensors())}")
         columns = {"time": time, input_kind: command, **signals}
         if reference is not None:
             columns["reference"] = reference

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -107,8 +108,8 @@ def test_a_calibration_is_for_volts_that_no_scale_converts(tmp_path: Path, unit:
         assert f"column 'arm_angle' is in {unit}" in refusal(path, columns=columns)
 
 
-@pytest.mark.parametrize("gains", [{"arm_angel": 1.0}, {"arm_angle": 0.0}, {"arm_angle": np.nan}])
-def test_calibration_is_checked(tmp_path: Path, gains: dict[str, float]) -> None:
+@pytest.mark.parametrize("gains", [{"arm_angel": 1}, *({"arm_angle": gain} for gain in (0.0, np.nan, None, "2 rad/V", 10**400))])
+def test_calibration_is_checked(tmp_path: Path, gains: dict[str, Any]) -> None:
     with pytest.raises(InputError, match=r"calibration: .*arm_ang"):
         Recording.read(save(tmp_path, GOOD), calibration=gains)
 

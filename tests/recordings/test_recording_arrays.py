@@ -39,12 +39,32 @@ from flexarm_env.sensors import known_sensors
         ({"time": [-1e308, 0, 1e308, 1.1e308, 1.2e308]}, "column 'time'"),
         ({"conditions": {"payload": -1.0}}, "payload"),
         ({"conditions": {"a b": 1.0}}, "'a b'"),
+        ({"conditions": {3: 1.0}}, "condition 3: write its name in letters"),
+        ({"conditions": {"payload": "0.3 kg"}}, "condition 'payload' is '0.3 kg'; write a finite number"),
+        ({"conditions": {"payload": None}}, "condition 'payload' is None; write a finite number"),
+        ({"conditions": {"kp": [1, 2]}}, "condition 'kp' is [1, 2]; write a finite number"),
+        ({"conditions": {"kp": 10**400}}, "write a finite number"),
+        ({"conditions": ["payload"]}, "conditions = ['payload']; give a dict"),
+        ({"signals": None}, "signals = None; give a dict"),
+        ({"signals": {3: np.zeros(5)}}, "unknown signal 3"),
+        ({"input_kind": None}, "unknown input None"),
+        ({"input_kind": ["current"]}, "unknown input ['current']"),
+        ({"command": np.ma.masked_array(np.zeros(5), mask=[0, 0, 0, 1, 0])}, "sample 4, column 'current': is nan"),
+        ({"time": np.ma.masked_array(np.arange(5), mask=[0, 1, 0, 0, 0])}, "sample 2, column 'time': is nan"),
+        ({"command": np.full(5, np.longdouble("1e4000"))}, "column 'current': is inf"),
     ],
 )
 def test_arrays_are_checked_as_files_are(changes: dict[str, Any], wanted: str) -> None:
     with pytest.raises(InputError) as caught:
         example(**changes)
     assert wanted in str(caught.value)
+
+
+def test_a_masked_sample_was_not_measured() -> None:
+    """What stands under a mask, such as -999 of a logger, is no reading."""
+    readings = np.ma.masked_array([1, -999, 3, 4, 5], mask=[False, True, False, False, False])
+    angle = example(signals={"arm_angle": readings}).signals["arm_angle"]
+    assert np.array_equal(angle, [1.0, np.nan, 3.0, 4.0, 5.0], equal_nan=True)
 
 
 def test_arrays_are_copied() -> None:

@@ -173,6 +173,8 @@ def test_a_file_that_is_no_controller_is_refused_in_one_line(tmp_path, text, wor
     [
         ("pd", {"proportional": "2"}, "give a finite number"),
         ("pd", {"proportional": [1.0]}, "give a finite number"),
+        ("pd", {"proportional": 10**400}, "give a finite number"),
+        ("lqg", {"design": {"dead_time": 10**400}}, "give a finite number"),
         ("pd", {"derivative": float("nan")}, "give a finite number"),
         ("lqg", {"order": 0}, "a whole number from 1 up"),
         ("lqg", {"design": {"dead_time": 1e9}}, "give at most 20 s"),
