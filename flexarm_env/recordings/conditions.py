@@ -22,6 +22,9 @@ _ADDITION = re.compile(r"\A([A-Za-z]++)[\s_-]++(?:mass|weight)(?![A-Za-z])", re.
 #: What follows the number of a date, a time, a version or a share.
 _OF_A_DATE = re.compile(r"[-:./]\d")
 _LONGEST_UNIT = 10
+#: A payload with its mass anywhere in a remark, the unit after the number or before it.
+_MASS = r"(?:[km]?g|lbs?|oz)"
+_PAYLOAD = re.compile(rf"payload(?:\D{{0,30}}+\d[\d.,]*+\s*+{_MASS}\b|\W{{1,5}}{_MASS}\W{{1,5}}\d)", re.IGNORECASE)
 
 
 def add_condition(line: str, conditions: dict[str, float]) -> dict[str, str]:
@@ -43,7 +46,7 @@ def add_condition(line: str, conditions: dict[str, float]) -> dict[str, str]:
     match = _CONDITION.fullmatch(text)
     if match is None or (match[4] == ":" and match[1] not in CONDITIONS):
         _check_remark(text)
-        return {}
+        return _mentioned(text)
     name, unit = match[1], (match[2] or match[3] or "").strip()
     value = match[5] if unit in ("", "1") else f"{match[5]} {unit}"
     if name in conditions:
@@ -60,7 +63,16 @@ def add_condition(line: str, conditions: dict[str, float]) -> dict[str, str]:
             return {name: f"{quoted(text)} is read as a remark: {error}"}
     elif fault := _fault(value.strip("\"'")):
         return {name: f"{quoted(text)} is read as a remark: {fault}"}
+    else:
+        return _mentioned(text)
     return {}
+
+
+def _mentioned(text: str) -> dict[str, str]:
+    """Make a note on a remark that tells of a payload amid other words, by its name."""
+    if _PAYLOAD.search(text) is None:
+        return {}
+    return {"payload": f"{quoted(text)} is read as a remark: write '# payload = 0.3 kg' in a line of its own if it states it"}
 
 
 def _fault(value: str) -> str:

@@ -134,3 +134,26 @@ def test_a_condition_of_an_unknown_unit_is_noted(tmp_path, line, words):
     (tmp_path / "run.csv").write_text(f"{line}\n{GOOD}")
     notes = Recording.read(tmp_path / "run.csv").notes
     assert words in notes[0] if words else notes == ()
+
+
+@pytest.mark.parametrize(
+    "remark",
+    [
+        "kp = 3, payload = 0.3 kg",
+        "run 5 | payload = 0.3 kg",
+        "arm A; payload: 300 g",
+        "the tip payload was about 0.3 kg",
+        "payload ~ 0,3 kg",
+        "PAYLOAD: 0.3 KG",
+        "payload kg = 0.3",
+    ],
+)
+def test_a_payload_amid_other_words_is_noted(tmp_path: Path, remark: str) -> None:
+    run = Recording.read(save(tmp_path, f"# {remark}\n{GOOD}"))
+    assert "payload" not in run.conditions
+    (note,) = run.notes
+    assert note.startswith(f"row 1: '{remark}' is read as a remark: write '# payload = 0.3 kg' in a line of its own")
+
+
+    "payload",
+    "# a payload{}",
