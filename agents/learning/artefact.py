@@ -75,7 +75,7 @@ class Artefact:
             raise InputError(f"{path}: {error}") from None
         except OSError:
             raise InputError(f"{path}: cannot be read; check its permissions") from None
-        except (SafetensorError, KeyError, ValueError, TypeError, AttributeError, RecursionError) as error:
+        except (SafetensorError, KeyError, ValueError, TypeError, AttributeError, RuntimeError) as error:
             raise InputError(f"{path} is no policy ({error}); python -m agents.train makes one") from None
 
     def agent(self, interval: float = 1.0 / RATE) -> LearnedPolicy:

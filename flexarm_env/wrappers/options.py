@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any, TypeVar
 
+from flexarm_env import units
 from flexarm_env.controllers import CONTROLLERS
 from flexarm_env.errors import InputError, did_you_mean
 
@@ -137,5 +138,5 @@ def _number(path: str, value: Any, default: float, rules: Mapping[str, Any]) -> 
     if isinstance(value, bool) or not isinstance(value, kinds):
         raise InputError(f"{path} = {value!r}; give a {'whole ' if kinds is int else ''}number")
     if not rules["least"] <= value <= rules["most"]:
-        raise InputError(f"{path} = {value:g}; allowed are {rules['least']:g} to {rules['most']:g}")
+        raise InputError(f"{path} = {units.as_float(value):g}; allowed are {rules['least']:g} to {rules['most']:g}")
     return type(default)(value)

@@ -133,6 +133,14 @@ def test_weights_that_are_no_finite_numbers_are_refused(trained: Artefact, tmp_p
         Artefact.load(path)
 
 
+def test_weights_of_a_kind_that_torch_computes_nothing_of_are_refused(trained: Artefact, tmp_path: Path) -> None:
+    path = tmp_path / "a-0.safetensors"
+    replace(trained, weights={name: value.to(torch.float8_e4m3fn) for name, value in trained.weights.items()}).save(path)
+    with pytest.raises(InputError, match=r"a-0\.safetensors is no policy \(.*; python -m agents.train makes one") as caught:
+        Artefact.load(path)
+    assert str(caught.value).isprintable()
+
+
 @pytest.mark.parametrize(
     ("entry", "text", "words"),
     [
@@ -146,6 +154,7 @@ def test_weights_that_are_no_finite_numbers_are_refused(trained: Artefact, tmp_p
         ("seconds", "1" + 400 * "0", "run.seconds"),
         ("curve", "[[1, 2], [3]]", "run.curve"),
         ("curve", "[[1, Infinity]]", "run.curve"),
+        ("plan", '{"actions": 1' + 400 * "0" + "}", "actions = inf; allowed are "),
         ("plan", "[]", "the options = [] is not a table; give some of algorithm, task"),
         ("plan", '{"x": 1}', "unknown key 'x'; allowed: actions"),
         ("plan", '{"seeds": 0}', "seeds = 0"),

@@ -35,6 +35,8 @@ def test_every_shipped_configuration_is_read(path: Path) -> None:
         ({"learning": {"gama": 0.9}}, "unknown key 'learning.gama'; did you mean 'gamma'?"),
         ({"algorithm": "pp"}, "did you mean 'ppo'?"),
         ({"learning": {"gamma": 1.5}}, "learning.gamma = 1.5; allowed are 0 to 1"),
+        ({"learning": {"gamma": 10**400}}, "learning.gamma = inf; allowed are 0 to 1"),
+        ({"actions": -(10**400)}, "actions = -inf; allowed are "),
         ({"learning": {"gamma": "high"}}, "give a number"),
         ({"at_once": 2.5}, "give a whole number"),
         ({"interface": {"lags": 3}}, "give a list"),
