@@ -153,7 +153,3 @@ def test_a_payload_amid_other_words_is_noted(tmp_path: Path, remark: str) -> Non
     assert "payload" not in run.conditions
     (note,) = run.notes
     assert note.startswith(f"row 1: '{remark}' is read as a remark: write '# payload = 0.3 kg' in a line of its own")
-
-
-    "payload",
-    "# a payload{}",
