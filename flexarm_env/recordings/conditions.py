@@ -22,8 +22,8 @@ _ADDITION = re.compile(r"\A([A-Za-z]++)[\s_-]++(?:mass|weight)(?![A-Za-z])", re.
 #: What follows the number of a date, a time, a version or a share.
 _OF_A_DATE = re.compile(r"[-:./]\d")
 _LONGEST_UNIT = 10
-#: A payload with its mass anywhere in a remark, the unit after the number or before it.
 _MASS = r"(?:[km]?g|lbs?|oz)"
+#: A payload with its mass anywhere in a remark, the unit after the number or before it.
 _PAYLOAD = re.compile(rf"payload(?:\D{{0,30}}+\d[\d.,]*+\s*+{_MASS}\b|\W{{1,5}}{_MASS}\W{{1,5}}\d)", re.IGNORECASE)
 
 
